@@ -1,0 +1,46 @@
+# One way to define a library of ours, so that flags, include roots, install
+# rules and the exported name are the same for every layer.
+
+find_package(Threads REQUIRED)
+
+# Options every target of the project is compiled with; never exported.
+function(isotherm_compile_options target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_options(${target} PRIVATE
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+    -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wunused -Wnull-dereference
+    # Eigen 3.4 with GCC 12 triggers these in its own vectorised code.
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-null-dereference>)
+  if(ISOTHERM_WARNINGS_AS_ERRORS)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(ISOTHERM_SANITIZE)
+    target_compile_options(${target} PRIVATE
+      -fsanitize=${ISOTHERM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=${ISOTHERM_SANITIZE})
+  endif()
+endfunction()
+
+# isotherm_add_library(<layer> SOURCES ... PUBLIC ... PRIVATE ...)
+# Defines isotherm_<layer> with the alias isotherm::<layer>.
+function(isotherm_add_library layer)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  set(target isotherm_${layer})
+  add_library(${target} ${ARG_SOURCES})
+  add_library(isotherm::${layer} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES
+    EXPORT_NAME ${layer}
+    VERSION ${PROJECT_VERSION}
+    POSITION_INDEPENDENT_CODE ON
+    CXX_EXTENSIONS OFF)
+  target_include_directories(${target}
+    PUBLIC
+      $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+      $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+    PRIVATE
+      ${CMAKE_CURRENT_SOURCE_DIR}/src)
+  target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  isotherm_compile_options(${target})
+  install(TARGETS ${target} EXPORT isothermTargets)
+  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+endfunction()

@@ -1,0 +1,65 @@
+#!/usr/bin/env bash
+# Installs what Isotherm needs on Debian 12, and nothing that is there already.
+# Runs as root or through sudo.
+set -euo pipefail
+
+packages=(
+  # tools
+  build-essential cmake ninja-build ccache
+  # libraries
+  libeigen3-dev libspectra-dev libsuitesparse-dev libtbb-dev zlib1g-dev
+  libfast-float-dev libcli11-dev nlohmann-json3-dev libfmt-dev
+  # tests
+  libgtest-dev libgmock-dev librapidcheck-dev
+)
+
+usage() {
+  cat <<'USAGE'
+usage: scripts/install-deps.sh [--list]
+
+Installs the Debian packages Isotherm is built and tested with.
+  --list   only print which packages are missing
+USAGE
+}
+
+missing_packages() {
+  local package
+  for package in "${packages[@]}"; do
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q '^install ok installed$' ||
+      echo "$package"
+  done
+}
+
+list_only=false
+case "${1:-}" in
+  --list) list_only=true ;;
+  --help | -h) usage; exit 0 ;;
+  '') ;;
+  *) usage >&2; exit 2 ;;
+esac
+
+if ! command -v apt-get >/dev/null; then
+  echo "install-deps: apt-get not found; install these yourself: ${packages[*]}" >&2
+  exit 1
+fi
+
+mapfile -t missing < <(missing_packages)
+if [ "${#missing[@]}" -eq 0 ]; then
+  echo "install-deps: everything is installed"
+  exit 0
+fi
+echo "install-deps: missing: ${missing[*]}"
+if $list_only; then exit 0; fi
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  if ! command -v sudo >/dev/null; then
+    echo "install-deps: not root and no sudo; run as root: apt-get install ${missing[*]}" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+  apt-get install -y -qq --no-install-recommends "${missing[@]}"

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace isotherm_test {
+
+/// A file that ships with the tests, by its path below tests/data.
+inline std::filesystem::path shipped_data(const std::string& name) {
+  return std::filesystem::path(ISOTHERM_TEST_DATA) / name;
+}
+
+/// The folder of real data sets: $ISOTHERM_DATA, or its default place.
+inline std::filesystem::path real_data_root() {
+  const char* named = std::getenv("ISOTHERM_DATA");
+  return named != nullptr ? std::filesystem::path(named)
+                          : std::filesystem::path(ISOTHERM_DEFAULT_DATA);
+}
+
+}  // namespace isotherm_test
+
+/// Sets `path` to a real data file, or skips the test with a message that says
+/// what is missing and how to provide it.
+#define ISOTHERM_REAL_DATA_OR_SKIP(path, name)                                          \
+  const std::filesystem::path path = isotherm_test::real_data_root() / (name);          \
+  if (!std::filesystem::exists(path)) {                                                 \
+    GTEST_SKIP() << "no " << path.string() << "; set ISOTHERM_DATA to the data folder"; \
+  }
