@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "isotherm/base/options.hpp"
+#include "isotherm/slam/pose_graph.hpp"
+#include "isotherm/spectral/weighted_graph.hpp"
+
+namespace isotherm::slam {
+
+/// How candidates are weighted before any spectral analysis.
+enum class Initialisation {
+  chi2,     ///< 1 / (1 + chi2 / dof) with chi2 against odometry alone
+  uniform,  ///< every candidate alike
+};
+
+constexpr std::array<EnumName<Initialisation>, 2> enum_names(Initialisation) {
+  return {{{Initialisation::chi2, "chi2"}, {Initialisation::uniform, "uniform"}}};
+}
+
+/// Graph induction (S. Datta et al., section V-A).
+struct InductionOptions {
+  Initialisation init = Initialisation::chi2;  ///< weights of the candidates
+  double odometry_weight = 1.0;                ///< affinity of odometry, > 0
+  double loop_weight = 1.0;                    ///< largest affinity of a candidate, > 0
+
+  void validate() const;
+};
+
+/// A pose graph seen as a weighted graph on the same vertices.
+struct InducedGraph {
+  spectral::WeightedGraph graph;
+  std::vector<Index> edge_constraint;  ///< per edge: position of its constraint
+  std::vector<Index> constraint_edge;  ///< per constraint: its edge, or -1 if it has none
+};
+
+/// Odometry gets odometry_weight, candidates a weight in (0, loop_weight].
+/// A candidate whose weight underflows to 0 has no edge. O(m log n).
+template <class Pose>
+InducedGraph induce(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                    const InductionOptions& options = {});
+
+}  // namespace isotherm::slam

@@ -1,0 +1,63 @@
+#include "isotherm/slam/induce.hpp"
+
+#include <cmath>
+
+#include "isotherm/base/error.hpp"
+#include "isotherm/slam/odometry_chi2.hpp"
+
+namespace isotherm::slam {
+namespace {
+
+void require_positive(const char* name, double value) {
+  if (!(std::isfinite(value) && value > 0.0)) {
+    throw InvalidArgument(name, "must be finite and positive");
+  }
+}
+
+template <class Pose>
+std::vector<double> candidate_weights(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                                      const InductionOptions& options) {
+  std::vector<double> weights(roles.candidates.size(), options.loop_weight);
+  if (options.init == Initialisation::chi2) {
+    const auto checks = odometry_chi2(graph, roles);
+    for (std::size_t c = 0; c < weights.size(); ++c) {
+      weights[c] = options.loop_weight / (1.0 + checks[c].chi2 / Pose::kDof);
+    }
+  }
+  return weights;
+}
+
+}  // namespace
+
+void InductionOptions::validate() const {
+  require_positive("odometry_weight", odometry_weight);
+  require_positive("loop_weight", loop_weight);
+}
+
+template <class Pose>
+InducedGraph induce(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                    const InductionOptions& options) {
+  options.validate();
+  std::vector<double> weight(graph.constraints.size(), options.odometry_weight);
+  const auto candidate_weight = candidate_weights(graph, roles, options);
+  for (std::size_t c = 0; c < candidate_weight.size(); ++c) {
+    weight[roles.candidates[c]] = candidate_weight[c];
+  }
+
+  InducedGraph induced;
+  induced.constraint_edge.assign(graph.constraints.size(), -1);
+  std::vector<spectral::WeightedEdge> edges;
+  for (Index k = 0; k < graph.constraint_count(); ++k) {
+    if (!(weight[k] > 0.0)) continue;
+    induced.constraint_edge[k] = static_cast<Index>(edges.size());
+    induced.edge_constraint.push_back(k);
+    edges.push_back({graph.constraints[k].from, graph.constraints[k].to, weight[k]});
+  }
+  induced.graph = spectral::WeightedGraph(graph.vertex_count(), std::move(edges));
+  return induced;
+}
+
+template InducedGraph induce(const PoseGraph<Pose2>&, const EdgeRoles&, const InductionOptions&);
+template InducedGraph induce(const PoseGraph<Pose3>&, const EdgeRoles&, const InductionOptions&);
+
+}  // namespace isotherm::slam

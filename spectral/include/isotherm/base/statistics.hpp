@@ -1,0 +1,15 @@
+#pragma once
+
+namespace isotherm {
+
+/// The value that a chi-squared variable with `dof` degrees of freedom stays
+/// below with the given probability, 0 <= probability < 1.
+/// @throws InvalidArgument outside these ranges or for dof < 1.
+double chi_squared_quantile(double probability, int dof);
+
+/// The probability that a chi-squared variable with `dof` degrees of freedom
+/// exceeds `value` >= 0.
+/// @throws InvalidArgument for a negative or NaN value or for dof < 1.
+double chi_squared_upper_tail(double value, int dof);
+
+}  // namespace isotherm
