@@ -1,0 +1,258 @@
+#include "graph_draft.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "information_check.hpp"
+#include "isotherm/spectral/weighted_graph.hpp"
+
+namespace isotherm::slam {
+namespace {
+
+template <class Pose>
+class Finisher {
+ public:
+  Finisher(GraphDraft<Pose> draft, const ReadOptions& options, ReadReport& report)
+      : draft_(std::move(draft)), options_(options), report_(report) {}
+
+  PoseGraph<Pose> run(const std::vector<FixedVertex>& fixed) {
+    check_size();
+    sort_vertices();
+    collect_ids();
+    resolve_ends();
+    place_vertices();
+    repair_information();
+    resolve_fixed(fixed);
+    return std::move(graph_);
+  }
+
+ private:
+  SourceLocation at(std::uint64_t line, std::uint64_t column = 0) const {
+    return {report_.path, line, column};
+  }
+
+  // Positions are 32-bit; the ends of all edges must fit as well.
+  void check_size() const {
+    constexpr std::size_t kMost = std::numeric_limits<Index>::max() / 3;
+    if (draft_.vertices.size() > kMost || draft_.constraints.size() > kMost) {
+      throw ParseError(at(0), "", "more than " + std::to_string(kMost) + " records");
+    }
+  }
+
+  void sort_vertices() {
+    auto& vertices = draft_.vertices;
+    const auto by_id = [](const auto& a, const auto& b) { return a.id < b.id; };
+    const auto out_of_place = std::is_sorted_until(vertices.begin(), vertices.end(), by_id);
+    if (out_of_place != vertices.end()) {
+      const auto previous = std::prev(out_of_place);
+      report_.add_repair(
+          options_,
+          {"vertices sorted", at(out_of_place->line), std::to_string(out_of_place->id),
+           "vertex id out of place after " + std::to_string(previous->id) + "; sorted by id"});
+      std::stable_sort(vertices.begin(), vertices.end(), by_id);
+    }
+    const auto repeated =
+        std::adjacent_find(vertices.begin(), vertices.end(),
+                           [](const auto& a, const auto& b) { return a.id == b.id; });
+    if (repeated != vertices.end()) {
+      const auto second = std::next(repeated);
+      throw ParseError(at(second->line), std::to_string(second->id),
+                       "vertex already given at line " + std::to_string(repeated->line));
+    }
+  }
+
+  bool has_vertex_line(VertexId id) const {
+    const auto& vertices = draft_.vertices;
+    // Most files number their vertices without gaps.
+    if (!vertices.empty()) {
+      const VertexId offset = id - vertices.front().id;
+      if (offset < vertices.size() && vertices[offset].id == id) return true;
+    }
+    return std::binary_search(vertices.begin(), vertices.end(),
+                              typename GraphDraft<Pose>::Vertex{id, 0, {}},
+                              [](const auto& a, const auto& b) { return a.id < b.id; });
+  }
+
+  // Moves the vertices into the graph, with room for those only edges name.
+  void collect_ids() {
+    std::vector<VertexId> missing;
+    for (const auto& [from, to] : draft_.end_ids) {
+      if (!has_vertex_line(from)) missing.push_back(from);
+      if (!has_vertex_line(to)) missing.push_back(to);
+    }
+    std::sort(missing.begin(), missing.end());
+    missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
+    missing.shrink_to_fit();
+
+    if (draft_.vertices.empty()) {
+      graph_.ids = std::move(missing);
+      return;
+    }
+    const std::size_t count = draft_.vertices.size() + missing.size();
+    graph_.ids.reserve(count);
+    graph_.poses.reserve(count);
+    auto next = missing.begin();
+    const auto add_missing = [&] {
+      missing_.push_back(graph_.vertex_count());
+      graph_.ids.push_back(*next++);
+      graph_.poses.emplace_back();
+    };
+    for (const auto& vertex : draft_.vertices) {
+      while (next != missing.end() && *next < vertex.id) add_missing();
+      graph_.ids.push_back(vertex.id);
+      graph_.poses.push_back(vertex.pose);
+    }
+    while (next != missing.end()) add_missing();
+    draft_.vertices = {};
+  }
+
+  Index position(VertexId id) const {
+    const VertexId offset = id - graph_.ids.front();
+    if (offset < graph_.ids.size() && graph_.ids[offset] == id) return static_cast<Index>(offset);
+    return *graph_.find(id);
+  }
+
+  void resolve_ends() {
+    graph_.constraints = std::move(draft_.constraints);
+    for (std::size_t k = 0; k < graph_.constraints.size(); ++k) {
+      graph_.constraints[k].from = position(draft_.end_ids[k].first);
+      graph_.constraints[k].to = position(draft_.end_ids[k].second);
+    }
+    draft_.end_ids = {};
+  }
+
+  // Gives poses to the vertices that have no line of their own: breadth first
+  // along the constraints, starting from all that have one.
+  void place_vertices() {
+    if (missing_.empty()) return;
+    std::vector<bool> placed(graph_.ids.size(), true);
+    for (const Index vertex : missing_) placed[vertex] = false;
+    const auto adjacency = unit_graph();
+
+    std::vector<Index> queue;
+    for (Index v = 0; v < graph_.vertex_count(); ++v) {
+      if (placed[v]) queue.push_back(v);
+    }
+    auto next_start = missing_.begin();
+    std::size_t head = 0;
+    while (true) {
+      for (; head < queue.size(); ++head) place_neighbours(adjacency, queue[head], placed, queue);
+      next_start = std::find_if(next_start, missing_.end(), [&](Index v) { return !placed[v]; });
+      if (next_start == missing_.end()) return;
+      place_at_origin(*next_start);
+      placed[*next_start] = true;
+      queue.push_back(*next_start);
+    }
+  }
+
+  spectral::WeightedGraph unit_graph() const {
+    std::vector<spectral::WeightedEdge> edges;
+    edges.reserve(graph_.constraints.size());
+    for (const auto& constraint : graph_.constraints) {
+      edges.push_back({constraint.from, constraint.to, 1.0});
+    }
+    return {graph_.vertex_count(), std::move(edges)};
+  }
+
+  void place_neighbours(const spectral::WeightedGraph& adjacency, Index vertex,
+                        std::vector<bool>& placed, std::vector<Index>& queue) {
+    for (const auto& [neighbour, edge] : adjacency.neighbours(vertex)) {
+      if (placed[neighbour]) continue;
+      const auto& constraint = graph_.constraints[edge];
+      const Pose& known = graph_.poses[vertex];
+      graph_.poses[neighbour] = constraint.from == vertex ? known * constraint.T_from_to
+                                                          : known * constraint.T_from_to.inverse();
+      placed[neighbour] = true;
+      queue.push_back(neighbour);
+      report_.add_repair(
+          options_, {"vertex placed", at(constraint.line), std::to_string(graph_.ids[neighbour]),
+                     "vertex has no line of its own; placed by this edge"});
+    }
+  }
+
+  void place_at_origin(Index vertex) {
+    report_.add_repair(options_,
+                       {"vertex placed", at(0), std::to_string(graph_.ids[vertex]),
+                        "vertex has no line of its own and no edge leads to it from one that has; "
+                        "placed at the origin"});
+  }
+
+  // Replaces matrices that are not positive semi-definite by that of the edge
+  // whose determinant is the median among the good ones of the same kind.
+  void repair_information() {
+    if (draft_.indefinite.empty()) return;
+    std::vector<bool> good(graph_.constraints.size(), true);
+    for (const auto& suspect : draft_.indefinite) good[suspect.constraint] = false;
+    const auto roles = edge_roles(graph_);
+    std::vector<bool> is_odometry(graph_.constraints.size(), false);
+    for (const Index k : roles.odometry) is_odometry[k] = true;
+    const auto odometry = median_edge(roles.odometry, good);
+    const auto candidate = median_edge(roles.candidates, good);
+
+    for (const auto& [k, column] : draft_.indefinite) {
+      const auto own = is_odometry[k] ? odometry : candidate;
+      const auto source = own ? own : (is_odometry[k] ? candidate : odometry);
+      auto& constraint = graph_.constraints[k];
+      const std::string kind = is_odometry[k] ? "odometry" : "loop";
+      if (!source) {
+        throw ParseError(at(constraint.line, column), "",
+                         "information matrix is not positive semi-definite, and no edge has one "
+                         "that could stand in");
+      }
+      report_.add_repair(options_, {"information replaced", at(constraint.line, column), "",
+                                    "information matrix of this " + kind +
+                                        " edge is not positive semi-definite; replaced by the "
+                                        "median, from line " +
+                                        std::to_string(graph_.constraints[*source].line)});
+      constraint.information = graph_.constraints[*source].information;
+    }
+  }
+
+  std::optional<Index> median_edge(const std::vector<Index>& edges,
+                                   const std::vector<bool>& good) const {
+    std::vector<std::pair<double, Index>> by_determinant;
+    for (const Index k : edges) {
+      if (good[k])
+        by_determinant.emplace_back(log_determinant(graph_.constraints[k].information), k);
+    }
+    if (by_determinant.empty()) return std::nullopt;
+    const auto median = by_determinant.begin() + (by_determinant.size() - 1) / 2;
+    std::nth_element(by_determinant.begin(), median, by_determinant.end());
+    return median->second;
+  }
+
+  void resolve_fixed(const std::vector<FixedVertex>& fixed) {
+    for (const auto& entry : fixed) {
+      const auto found = graph_.find(entry.id);
+      if (!found) {
+        throw ParseError(entry.where, std::to_string(entry.id), "fixed vertex does not exist");
+      }
+      graph_.fixed.push_back(*found);
+    }
+    std::sort(graph_.fixed.begin(), graph_.fixed.end());
+    graph_.fixed.erase(std::unique(graph_.fixed.begin(), graph_.fixed.end()), graph_.fixed.end());
+  }
+
+  GraphDraft<Pose> draft_;
+  const ReadOptions& options_;
+  ReadReport& report_;
+  PoseGraph<Pose> graph_;
+  std::vector<Index> missing_;  // vertices without a line, where others have one
+};
+
+}  // namespace
+
+template <class Pose>
+PoseGraph<Pose> finish_graph(GraphDraft<Pose> draft, const std::vector<FixedVertex>& fixed,
+                             const ReadOptions& options, ReadReport& report) {
+  return Finisher<Pose>(std::move(draft), options, report).run(fixed);
+}
+
+template PoseGraph<Pose2> finish_graph(GraphDraft<Pose2>, const std::vector<FixedVertex>&,
+                                       const ReadOptions&, ReadReport&);
+template PoseGraph<Pose3> finish_graph(GraphDraft<Pose3>, const std::vector<FixedVertex>&,
+                                       const ReadOptions&, ReadReport&);
+
+}  // namespace isotherm::slam

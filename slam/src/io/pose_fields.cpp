@@ -1,0 +1,91 @@
+#include "pose_fields.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "isotherm/base/text_writer.hpp"
+
+namespace isotherm::slam {
+namespace {
+
+// Six significant digits, as most programs print, put a norm or an angle off by
+// less than this.
+constexpr double kPrintedRounding = 1e-5;
+constexpr double kLargestNormError = 1e-2;
+// A quaternion just normalised is nearer to unit norm, so that reading what was
+// written changes nothing.
+constexpr double kUnitSquaredNorm = 16 * std::numeric_limits<double>::epsilon();
+
+}  // namespace
+
+double PoseFields::angle() {
+  const double radians = reader_.number("an angle in radians");
+  constexpr double kPi = std::numbers::pi;
+  if (std::abs(radians) <= kPi) return radians;
+  if (std::abs(radians) <= kPi + kPrintedRounding) {
+    ++rounded_angles_;
+  } else {
+    report_.add_repair(options_, {"angle wrapped", reader_.location(), format_number(radians),
+                                  "angle outside [-pi, pi]; wrapped"});
+  }
+  return wrap_angle(radians);
+}
+
+Pose2 PoseFields::planar() {
+  const double x = reader_.number("x");
+  const double y = reader_.number("y");
+  return {x, y, angle()};
+}
+
+Eigen::Quaterniond PoseFields::quaternion(bool w_first) {
+  Eigen::Quaterniond q;
+  if (w_first) q.w() = reader_.number("qw");
+  q.x() = reader_.number("qx");
+  const auto where = reader_.location();
+  q.y() = reader_.number("qy");
+  q.z() = reader_.number("qz");
+  if (!w_first) q.w() = reader_.number("qw");
+  if (std::abs(q.squaredNorm() - 1.0) <= kUnitSquaredNorm) return q;
+  const double norm = q.norm();
+  const double error = std::abs(norm - 1.0);
+  if (!(error <= kLargestNormError)) {
+    throw ParseError(where, "", "expected a unit quaternion, its norm is " + format_number(norm));
+  }
+  if (error <= kPrintedRounding) {
+    ++rounded_quaternions_;
+  } else {
+    report_.add_repair(options_, {"quaternion normalised", where, "",
+                                  "quaternion of norm " + format_number(norm) + "; normalised"});
+  }
+  return q.normalized();
+}
+
+Pose3 PoseFields::spatial() {
+  const double x = reader_.number("x");
+  const double y = reader_.number("y");
+  const double z = reader_.number("z");
+  return {{x, y, z}, quaternion()};
+}
+
+Pose3 PoseFields::spatial_euler() {
+  const double x = reader_.number("x");
+  const double y = reader_.number("y");
+  const double z = reader_.number("z");
+  const double roll = reader_.number("roll");
+  const double pitch = reader_.number("pitch");
+  const double yaw = reader_.number("yaw");
+  using Eigen::AngleAxisd;
+  using Eigen::Vector3d;
+  const Eigen::Quaterniond rotation = AngleAxisd(yaw, Vector3d::UnitZ()) *
+                                      AngleAxisd(pitch, Vector3d::UnitY()) *
+                                      AngleAxisd(roll, Vector3d::UnitX());
+  return {{x, y, z}, rotation.normalized()};
+}
+
+void PoseFields::finish() {
+  if (rounded_quaternions_ > 0) report_.notes["quaternion rounded"] += rounded_quaternions_;
+  if (rounded_angles_ > 0) report_.notes["angle rounded"] += rounded_angles_;
+}
+
+}  // namespace isotherm::slam

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "isotherm/base/read_report.hpp"
+#include "isotherm/base/text_reader.hpp"
+#include "isotherm/slam/pose.hpp"
+
+namespace isotherm::slam {
+
+/// Reads poses from the fields of a line and repairs what rounding did to them.
+///
+/// A quaternion whose norm is off by what six printed digits explain, or an angle
+/// as little outside [-pi, pi], is corrected and only counted; a larger deviation
+/// is a located repair; a quaternion further than 1 % from unit norm is an error.
+class PoseFields {
+ public:
+  PoseFields(TextReader& reader, const ReadOptions& options, ReadReport& report)
+      : reader_(reader), options_(options), report_(report) {}
+
+  /// x y theta
+  Pose2 planar();
+  /// x y z qx qy qz qw
+  Pose3 spatial();
+  /// x y z roll pitch yaw, with R = Rz(yaw) Ry(pitch) Rx(roll)
+  Pose3 spatial_euler();
+  /// qx qy qz qw or, `w_first`, qw qx qy qz
+  Eigen::Quaterniond quaternion(bool w_first = false);
+  double angle();
+
+  /// Adds what was only counted to the report.
+  void finish();
+
+ private:
+  TextReader& reader_;
+  const ReadOptions& options_;
+  ReadReport& report_;
+  std::uint64_t rounded_quaternions_ = 0;
+  std::uint64_t rounded_angles_ = 0;
+};
+
+}  // namespace isotherm::slam

@@ -1,0 +1,242 @@
+#include <array>
+#include <cctype>
+#include <string_view>
+#include <utility>
+
+#include "graph_draft.hpp"
+#include "information_check.hpp"
+#include "isotherm/slam/io/pose_graph_file.hpp"
+#include "pose_fields.hpp"
+
+namespace isotherm::slam {
+namespace {
+
+enum class Tag { vertex_se2, vertex_se3, edge_se2, edge_se3, fix, vertex2, vertex3, edge2, edge3 };
+
+constexpr std::array<std::pair<std::string_view, Tag>, 9> kTags = {{
+    {"EDGE_SE3:QUAT", Tag::edge_se3},
+    {"EDGE_SE2", Tag::edge_se2},
+    {"VERTEX_SE3:QUAT", Tag::vertex_se3},
+    {"VERTEX_SE2", Tag::vertex_se2},
+    {"FIX", Tag::fix},
+    {"EDGE2", Tag::edge2},
+    {"EDGE3", Tag::edge3},
+    {"VERTEX2", Tag::vertex2},
+    {"VERTEX3", Tag::vertex3},
+}};
+
+// Entries (row, column) of an information matrix in the order of a line.
+template <int kDof>
+using EntryOrder = std::array<std::pair<int, int>, kDof*(kDof + 1) / 2>;
+
+template <int kDof>
+constexpr EntryOrder<kDof> upper_triangle_by_rows() {
+  EntryOrder<kDof> order{};
+  std::size_t next = 0;
+  for (int row = 0; row < kDof; ++row) {
+    for (int column = row; column < kDof; ++column) order[next++] = {row, column};
+  }
+  return order;
+}
+
+constexpr auto kG2oOrder2 = upper_triangle_by_rows<3>();
+constexpr auto kG2oOrder3 = upper_triangle_by_rows<6>();
+// G. Grisetti's TORO: I11 I12 I22 I33 I13 I23.
+constexpr EntryOrder<3> kToroOrder2 = {{{0, 0}, {0, 1}, {1, 1}, {2, 2}, {0, 2}, {1, 2}}};
+
+template <class Matrix, std::size_t kCount>
+Matrix arranged(const std::array<double, kCount>& entries,
+                const std::array<std::pair<int, int>, kCount>& order) {
+  Matrix m;
+  for (std::size_t k = 0; k < kCount; ++k) {
+    m(order[k].first, order[k].second) = entries[k];
+    m(order[k].second, order[k].first) = entries[k];
+  }
+  return m;
+}
+
+class Reader {
+ public:
+  Reader(TextReader& text, const ReadOptions& options)
+      : text_(text), options_(options), fields_(text, options, file_.report) {
+    file_.report.path = text.path();
+  }
+
+  PoseGraphFile run() {
+    while (text_.next_line()) read_line();
+    finish();
+    return std::move(file_);
+  }
+
+ private:
+  void read_line() {
+    const auto tag = text_.word();
+    if (tag.empty()) return;
+    if (tag.front() == '#') {
+      file_.other_lines.emplace_back(text_.line());
+      return;
+    }
+    for (const auto& [name, value] : kTags) {
+      if (tag != name) continue;
+      ++counts_[static_cast<std::size_t>(value)];
+      read_record(value);
+      text_.expect_line_end();
+      return;
+    }
+    keep_unknown(tag);
+  }
+
+  void read_record(Tag tag) {
+    switch (tag) {
+      case Tag::vertex_se2:
+      case Tag::vertex2:
+        return vertex(planar_, [this] { return fields_.planar(); });
+      case Tag::vertex_se3:
+        return vertex(spatial_, [this] { return fields_.spatial(); });
+      case Tag::vertex3:
+        return vertex(spatial_, [this] { return fields_.spatial_euler(); });
+      case Tag::edge_se2:
+        return edge(
+            planar_, [this] { return fields_.planar(); }, kG2oOrder2);
+      case Tag::edge2:
+        return edge(
+            planar_, [this] { return fields_.planar(); }, kToroOrder2);
+      case Tag::edge_se3:
+        return edge(
+            spatial_, [this] { return fields_.spatial(); }, kG2oOrder3);
+      case Tag::edge3:
+        return edge(
+            spatial_, [this] { return fields_.spatial_euler(); }, kG2oOrder3);
+      case Tag::fix:
+        do {
+          const VertexId id = text_.unsigned_integer("a vertex id");
+          fixed_.push_back({id, text_.location()});
+        } while (!text_.at_line_end());
+    }
+  }
+
+  // Records of other kinds are kept for writing; what starts with no letter is
+  // not a record but damage.
+  void keep_unknown(std::string_view tag) {
+    if (std::isalpha(static_cast<unsigned char>(tag.front())) == 0) {
+      text_.fail("expected a record tag such as VERTEX_SE2 or EDGE_SE3:QUAT");
+    }
+    if (file_.report.skipped[std::string(tag)]++ == 0) {
+      file_.report.add_note({"unknown record", text_.location(), std::string(tag),
+                             "unknown record; kept as it stands but not used"});
+    }
+    file_.other_lines.emplace_back(text_.line());
+  }
+
+  template <class Pose>
+  void check_dimension() const {
+    const bool mixed = Pose::kDim == 2 ? !spatial_.empty() : !planar_.empty();
+    if (mixed) {
+      text_.fail(Pose::kDim == 2 ? "planar record in a file of spatial poses"
+                                 : "spatial record in a file of planar poses");
+    }
+  }
+
+  template <class Pose, class ReadPose>
+  void vertex(GraphDraft<Pose>& draft, const ReadPose& read_pose) {
+    check_dimension<Pose>();
+    const VertexId id = text_.unsigned_integer("a vertex id");
+    draft.vertices.push_back({id, text_.line_number(), read_pose()});
+  }
+
+  template <class Pose, class ReadPose, std::size_t kCount>
+  void edge(GraphDraft<Pose>& draft, const ReadPose& read_pose,
+            const std::array<std::pair<int, int>, kCount>& order) {
+    check_dimension<Pose>();
+    const VertexId from = text_.unsigned_integer("the id of the first vertex");
+    const VertexId to = text_.unsigned_integer("the id of the second vertex");
+    if (from == to) {
+      file_.report.add_note(
+          {"self edge", text_.location(), std::to_string(to), "edge from a vertex to itself"});
+    }
+    auto& constraint = draft.constraints.emplace_back();
+    draft.end_ids.emplace_back(from, to);
+    constraint.line = text_.line_number();
+    constraint.T_from_to = read_pose();
+
+    std::array<double, kCount> entries;
+    entries[0] = text_.number("an information entry");
+    const std::uint64_t column = text_.location().column;
+    for (std::size_t k = 1; k < kCount; ++k) entries[k] = text_.number("an information entry");
+    constraint.information = arranged<typename Pose::Matrix>(entries, order);
+    if (is_positive_semidefinite(constraint.information)) return;
+    if (!reordered(constraint, entries, order, column)) {
+      draft.indefinite.push_back({draft.constraints.size() - 1, column});
+    }
+  }
+
+  // Some programs write EDGE2 in the order of g2o: use that where TORO's own is
+  // impossible and the other is not.
+  template <class Pose, std::size_t kCount>
+  bool reordered(Constraint<Pose>& constraint, const std::array<double, kCount>& entries,
+                 const std::array<std::pair<int, int>, kCount>& order, std::uint64_t column) {
+    if constexpr (Pose::kDof == 3) {
+      if (order == kG2oOrder2) return false;
+      const auto by_rows = arranged<typename Pose::Matrix>(entries, kG2oOrder2);
+      if (!is_positive_semidefinite(by_rows)) return false;
+      file_.report.add_repair(options_, {"information reordered",
+                                         {text_.path(), text_.line_number(), column},
+                                         "",
+                                         "information is not positive semi-definite in TORO's "
+                                         "order of entries; read by rows"});
+      constraint.information = by_rows;
+      return true;
+    } else {
+      return false;
+    }
+  }
+
+  void finish() {
+    auto& report = file_.report;
+    report.lines = text_.line_number();
+    for (const auto& [name, tag] : kTags) {
+      const auto count = counts_[static_cast<std::size_t>(tag)];
+      if (count > 0) report.records[std::string(name)] = count;
+    }
+    fields_.finish();
+    if (planar_.empty() && spatial_.empty()) {
+      const std::string start = report.lines == 0 ? "the file is empty" : "no vertex and no edge";
+      throw ParseError({report.path, 0, 0}, "",
+                       start + "; expected a pose graph in g2o or TORO format");
+    }
+    const bool toro = counts_[static_cast<std::size_t>(Tag::vertex2)] +
+                          counts_[static_cast<std::size_t>(Tag::vertex3)] +
+                          counts_[static_cast<std::size_t>(Tag::edge2)] +
+                          counts_[static_cast<std::size_t>(Tag::edge3)] >
+                      0;
+    report.format = toro ? "toro" : "g2o";
+    if (spatial_.empty()) {
+      file_.graph = finish_graph(std::move(planar_), fixed_, options_, report);
+    } else {
+      file_.graph = finish_graph(std::move(spatial_), fixed_, options_, report);
+    }
+  }
+
+  TextReader& text_;
+  const ReadOptions& options_;
+  PoseGraphFile file_;
+  PoseFields fields_;
+  GraphDraft<Pose2> planar_;
+  GraphDraft<Pose3> spatial_;
+  std::vector<FixedVertex> fixed_;
+  std::array<std::uint64_t, kTags.size()> counts_{};
+};
+
+}  // namespace
+
+PoseGraphFile read_pose_graph(TextReader& reader, const ReadOptions& options) {
+  options.validate();
+  return Reader(reader, options).run();
+}
+
+PoseGraphFile read_pose_graph(const std::string& path, const ReadOptions& options) {
+  TextReader reader(path);
+  return read_pose_graph(reader, options);
+}
+
+}  // namespace isotherm::slam
