@@ -148,7 +148,7 @@ TEST(HeatDistance, RelabellingChangesNothing) {
 
 TEST(HeatDistance, ThreadCountDoesNotChangeAByte) {
   Random random(9);
-  const auto graph = loopy_path(2000, 300, random);
+  const auto graph = loopy_path(900, 100, random);
   const auto one = heat_distances(graph, edge_pairs(graph), kFigure5, {.threads = 1});
   const auto two = heat_distances(graph, edge_pairs(graph), kFigure5, {.threads = 2});
   EXPECT_EQ(
@@ -158,7 +158,7 @@ TEST(HeatDistance, ThreadCountDoesNotChangeAByte) {
 
 TEST(HeatDistance, StopsEarlyOnceAThresholdIsCleared) {
   Random random(10);
-  const auto graph = loopy_path(4000, 400, random);
+  const auto graph = loopy_path(1000, 60, random);
   const auto pairs = edge_pairs(graph);
   const HeatDistance engine(graph, {.tolerance = 1e-10});
   const std::vector<double> scales = {50.0};
