@@ -4,6 +4,9 @@
 #include <limits>
 #include <numbers>
 
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
 #include "isotherm/base/text_writer.hpp"
 
 namespace isotherm::slam {
@@ -83,8 +86,42 @@ Pose3 PoseFields::spatial_euler() {
   return {{x, y, z}, rotation.normalized()};
 }
 
+Pose3 PoseFields::matrix() {
+  Eigen::Matrix3d rotation;
+  Eigen::Vector3d translation;
+  SourceLocation where;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      rotation(i, j) = reader_.number("an entry of the rotation matrix");
+      if (i == 0 && j == 0) where = reader_.location();
+    }
+    translation[i] = reader_.number("an entry of the translation");
+  }
+  return {translation, nearest_rotation(rotation, where)};
+}
+
+// The rotation whose matrix differs least (in the Frobenius norm).
+Eigen::Quaterniond PoseFields::nearest_rotation(const Eigen::Matrix3d& matrix,
+                                                const SourceLocation& where) {
+  const double error = (matrix.transpose() * matrix - Eigen::Matrix3d::Identity()).norm();
+  if (!(error <= kLargestNormError) || matrix.determinant() < 0.0) {
+    throw ParseError(where, "", "expected a rotation matrix, |R'R - I| is " + format_number(error));
+  }
+  if (error > kPrintedRounding) {
+    report_.add_repair(options_, {"rotation matrix orthonormalised", where, "",
+                                  "matrix is a rotation only up to " + format_number(error) +
+                                      "; replaced by the nearest one"});
+  } else if (error > kUnitSquaredNorm) {
+    ++rounded_matrices_;
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Matrix3d nearest = svd.matrixU() * svd.matrixV().transpose();
+  return Eigen::Quaterniond(nearest).normalized();
+}
+
 void PoseFields::finish() {
   if (rounded_quaternions_ > 0) report_.notes["quaternion rounded"] += rounded_quaternions_;
+  if (rounded_matrices_ > 0) report_.notes["rotation matrix rounded"] += rounded_matrices_;
   if (rounded_angles_ > 0) report_.notes["angle rounded"] += rounded_angles_;
 }
 

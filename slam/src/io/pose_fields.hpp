@@ -22,6 +22,8 @@ class PoseFields {
   Pose3 spatial();
   /// x y z roll pitch yaw, with R = Rz(yaw) Ry(pitch) Rx(roll)
   Pose3 spatial_euler();
+  /// r11 r12 r13 x  r21 r22 r23 y  r31 r32 r33 z
+  Pose3 matrix();
   /// qx qy qz qw or, `w_first`, qw qx qy qz
   Eigen::Quaterniond quaternion(bool w_first = false);
   double angle();
@@ -30,11 +32,14 @@ class PoseFields {
   void finish();
 
  private:
+  Eigen::Quaterniond nearest_rotation(const Eigen::Matrix3d& matrix, const SourceLocation& where);
+
   TextReader& reader_;
   const ReadOptions& options_;
   ReadReport& report_;
   std::uint64_t rounded_quaternions_ = 0;
   std::uint64_t rounded_angles_ = 0;
+  std::uint64_t rounded_matrices_ = 0;
 };
 
 }  // namespace isotherm::slam

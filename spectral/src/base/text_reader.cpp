@@ -19,8 +19,6 @@ namespace {
 constexpr std::size_t kFirstBufferSize = std::size_t{1} << 18;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-bool is_blank(char c) noexcept { return c == ' ' || c == '\t'; }
-
 std::shared_ptr<gzFile_s> open_gzip(const std::string& path) {
   std::error_code ignored;
   if (path != "-" && std::filesystem::is_directory(path, ignored)) {
@@ -118,7 +116,7 @@ bool TextReader::fill() {
 }
 
 std::string_view TextReader::peek() {
-  while (end_ - begin_ < kLongestLine && fill()) {
+  while (end_ - begin_ < kLookAhead && fill()) {
   }
   return {buffer_.data() + begin_, end_ - begin_};
 }

@@ -23,6 +23,9 @@ class TextReader {
   /// A longer line is an error: it is no text this library reads.
   static constexpr std::size_t kLongestLine = std::size_t{1} << 20;
 
+  /// How far `peek` looks ahead, in bytes.
+  static constexpr std::size_t kLookAhead = std::size_t{1} << 16;
+
   /// Opens `path`, or standard input where it is "-".
   /// @throws FileError if it cannot be opened.
   explicit TextReader(const std::string& path);
@@ -36,9 +39,12 @@ class TextReader {
 
   const std::string& path() const noexcept { return path_; }
 
-  /// What comes next without consuming it: at least `kLongestLine` bytes or all
-  /// that is left. For telling formats apart.
+  /// What comes next without consuming it: at least `kLookAhead` bytes or all
+  /// that is left. For telling formats apart before the first line.
   std::string_view peek();
+
+  /// Tokens are from now on separated by `separator` as well as by blanks.
+  void set_separator(char separator) noexcept { separator_ = separator; }
 
   /// Goes to the next line and to its first token; false at the end of input.
   /// @throws FileError if reading fails, ParseError for an endless line.
@@ -82,6 +88,7 @@ class TextReader {
   using Source = std::function<std::size_t(std::span<char>)>;  // 0 at the end of input
 
   bool fill();
+  bool is_blank(char c) const noexcept { return c == ' ' || c == '\t' || c == separator_; }
   void skip_blanks() noexcept;
   [[noreturn]] void fail_expected(std::string_view what, std::string_view kind);
 
@@ -91,6 +98,7 @@ class TextReader {
   std::size_t begin_ = 0;  // unread part of the buffer
   std::size_t end_ = 0;
   bool source_ended_ = false;
+  char separator_ = ' ';
   std::uint64_t line_number_ = 0;
   const char* line_begin_ = nullptr;
   const char* line_end_ = nullptr;

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+
+#include "isotherm/base/options.hpp"
+#include "isotherm/base/text_reader.hpp"
+
+namespace isotherm::slam {
+
+/// The formats that are read and written. docs/formats.md describes each.
+enum class FileFormat {
+  unknown,
+  g2o,
+  toro,
+  pyfg,
+  tum,
+  kitti,
+  euroc,
+  planar,  ///< rows of time x y theta
+  edges,   ///< rows of from to [weight]
+  matrix_market,
+};
+
+constexpr std::array<EnumName<FileFormat>, 10> enum_names(FileFormat) {
+  return {{{FileFormat::unknown, "unknown"},
+           {FileFormat::g2o, "g2o"},
+           {FileFormat::toro, "toro"},
+           {FileFormat::pyfg, "pyfg"},
+           {FileFormat::tum, "tum"},
+           {FileFormat::kitti, "kitti"},
+           {FileFormat::euroc, "euroc"},
+           {FileFormat::planar, "planar"},
+           {FileFormat::edges, "edges"},
+           {FileFormat::matrix_market, "matrix-market"}}};
+}
+
+/// What kind of data a file holds.
+enum class FileContent { unknown, pose_graph, ranges, trajectory, graph };
+
+/// PyFG counts as ranges; it may hold a pose graph as well.
+FileContent content_of(FileFormat format);
+
+/// Tells the format by the first records of the input, which is not consumed.
+/// The name of the file plays no part.
+FileFormat detect_format(TextReader& reader);
+
+}  // namespace isotherm::slam

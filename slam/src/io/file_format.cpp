@@ -1,0 +1,124 @@
+#include "isotherm/slam/io/file_format.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <string_view>
+#include <vector>
+
+namespace isotherm::slam {
+namespace {
+
+bool is_separator(char c) { return c == ' ' || c == '\t' || c == ',' || c == '\r'; }
+
+std::vector<std::string_view> tokens_of(std::string_view line) {
+  std::vector<std::string_view> tokens;
+  std::size_t begin = 0;
+  while (begin < line.size()) {
+    if (is_separator(line[begin])) {
+      ++begin;
+      continue;
+    }
+    std::size_t end = begin;
+    while (end < line.size() && !is_separator(line[end])) ++end;
+    tokens.push_back(line.substr(begin, end - begin));
+    begin = end;
+  }
+  return tokens;
+}
+
+bool contains(const std::vector<std::string_view>& tokens, std::string_view wanted) {
+  return std::find(tokens.begin(), tokens.end(), wanted) != tokens.end();
+}
+
+bool starts_with_letter(std::string_view token) {
+  return std::isalpha(static_cast<unsigned char>(token.front())) != 0;
+}
+
+// PyFG names its vertices by a letter and a number where g2o has an id, and
+// gives a time stamp first (landmarks have none).
+bool has_named_vertex(const std::vector<std::string_view>& tokens) {
+  return (tokens.size() > 1 && starts_with_letter(tokens[1])) ||
+         (tokens.size() > 2 && starts_with_letter(tokens[2]));
+}
+
+FileFormat format_of_record(const std::vector<std::string_view>& tokens) {
+  const auto tag = tokens.front();
+  const bool known = tag.starts_with("VERTEX") || tag.starts_with("EDGE") || tag == "FIX";
+  if (!known) return FileFormat::unknown;
+  if (tag == "EDGE_RANGE" || has_named_vertex(tokens)) return FileFormat::pyfg;
+  const bool toro = tag == "VERTEX2" || tag == "VERTEX3" || tag == "EDGE2" || tag == "EDGE3";
+  return toro ? FileFormat::toro : FileFormat::g2o;
+}
+
+FileFormat format_of_header(const std::vector<std::string_view>& names) {
+  if (contains(names, "from") && contains(names, "to")) return FileFormat::edges;
+  if (contains(names, "time") || contains(names, "timestamp")) {
+    return names.size() >= 8 ? FileFormat::euroc : FileFormat::planar;
+  }
+  return FileFormat::unknown;
+}
+
+FileFormat format_of_row(const std::vector<std::string_view>& tokens, bool commas) {
+  switch (tokens.size()) {
+    case 2:
+    case 3:
+      return FileFormat::edges;
+    case 4:
+      return FileFormat::planar;
+    case 8:
+      return commas ? FileFormat::euroc : FileFormat::tum;
+    case 12:
+    case 13:
+      return commas ? FileFormat::euroc : FileFormat::kitti;
+    default:
+      return commas && tokens.size() > 8 ? FileFormat::euroc : FileFormat::unknown;
+  }
+}
+
+FileFormat format_of_line(std::string_view line) {
+  if (line.starts_with("%%MatrixMarket")) return FileFormat::matrix_market;
+  if (line.starts_with("#timestamp")) return FileFormat::euroc;
+  const auto tokens = tokens_of(line);
+  if (tokens.empty() || tokens.front().front() == '#') return FileFormat::unknown;
+  const bool commas = line.find(',') != std::string_view::npos;
+  double number = 0.0;
+  if (parse_number(tokens.front(), number)) return format_of_row(tokens, commas);
+  return commas ? format_of_header(tokens) : format_of_record(tokens);
+}
+
+}  // namespace
+
+FileContent content_of(FileFormat format) {
+  switch (format) {
+    case FileFormat::g2o:
+    case FileFormat::toro:
+      return FileContent::pose_graph;
+    case FileFormat::pyfg:
+      return FileContent::ranges;
+    case FileFormat::tum:
+    case FileFormat::kitti:
+    case FileFormat::euroc:
+    case FileFormat::planar:
+      return FileContent::trajectory;
+    case FileFormat::edges:
+    case FileFormat::matrix_market:
+      return FileContent::graph;
+    case FileFormat::unknown:
+      break;
+  }
+  return FileContent::unknown;
+}
+
+FileFormat detect_format(TextReader& reader) {
+  std::string_view rest = reader.peek();
+  while (!rest.empty()) {
+    const auto newline = rest.find('\n');
+    const auto format = format_of_line(rest.substr(0, newline));
+    if (format != FileFormat::unknown) return format;
+    if (newline == std::string_view::npos) break;
+    rest.remove_prefix(newline + 1);
+  }
+  return FileFormat::unknown;
+}
+
+}  // namespace isotherm::slam
