@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "option_flags.hpp"
+
+namespace isotherm::apps {
+
+/// What the process returns; part of the command's contract.
+enum ExitCode : int {
+  kOk = 0,
+  kFailure = 1,        ///< internal or numerical failure
+  kUsage = 2,          ///< unknown flag, missing argument, option out of range
+  kBadInput = 3,       ///< a file that cannot be read or understood
+  kNotConverged = 4,   ///< finished, but the iteration did not converge
+  kInterrupted = 130,  ///< stopped by Ctrl-C; nothing was written
+};
+
+/// One verb of the command: its parser and what runs when it was chosen.
+struct Verb {
+  CLI::App* parser = nullptr;
+  std::function<int()> run;
+};
+
+/// Flags every verb understands.
+struct CommonFlags {
+  std::string json;    ///< path of the JSON result, "-" for stdout, "" for none
+  std::string config;  ///< path of a JSON file with option values
+  bool dump_config = false;
+  bool strict = false;
+  bool quiet = false;
+  bool verbose = false;
+  bool no_progress = false;
+  std::uint64_t seed = 0;
+  int threads = 0;  ///< 0: as many as the machine has cores
+};
+
+void add_common_flags(CLI::App& verb, CommonFlags& flags);
+
+/// The configuration named by --config, or an empty object.
+/// @throws FileError, ParseError
+Json read_config(const CommonFlags& flags);
+
+/// Pretty-prints `json` to `path` ("-" is stdout); does nothing for an empty path.
+void write_json(const std::string& path, const Json& json);
+
+}  // namespace isotherm::apps

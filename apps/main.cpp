@@ -1,0 +1,68 @@
+#include <exception>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "command.hpp"
+#include "console.hpp"
+#include "isotherm/base/error.hpp"
+#include "verbs.hpp"
+
+namespace isotherm::apps {
+namespace {
+
+int complain(const std::exception& error, int code) {
+  fmt::print(stderr, "isotherm: {}\n", error.what());
+  return code;
+}
+
+// Turns what a verb throws into the exit codes of the contract.
+int run_guarded(const Verb& verb) {
+  try {
+    return verb.run();
+  } catch (const InvalidArgument& error) {
+    return complain(error, kUsage);
+  } catch (const ParseError& error) {
+    return complain(error, kBadInput);
+  } catch (const FileError& error) {
+    return complain(error, kBadInput);
+  } catch (const Cancelled&) {
+    fmt::print(stderr, "isotherm: interrupted; nothing was written\n");
+    return kInterrupted;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "isotherm: out of memory\n");
+    return kFailure;
+  } catch (const std::exception& error) {
+    return complain(error, kFailure);
+  }
+}
+
+int run(int argc, char** argv) {
+  CLI::App root("Isotherm: finds and removes the edges that do not belong in a geometric graph",
+                "isotherm");
+  root.set_version_flag("--version", ISOTHERM_VERSION);
+  root.require_subcommand(1);
+  root.get_formatter()->column_width(34);
+
+  const std::vector<Verb> verbs = {add_info(root),  add_simulate(root), add_corrupt(root),
+                                   add_prune(root), add_label(root),    add_eval(root)};
+  try {
+    root.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return root.exit(error) == 0 ? kOk : kUsage;
+  } catch (const InvalidArgument& error) {
+    return complain(error, kUsage);
+  }
+
+  stop_cleanly_on_interrupt();
+  for (const auto& verb : verbs) {
+    if (verb.parser->parsed()) return run_guarded(verb);
+  }
+  return kUsage;
+}
+
+}  // namespace
+}  // namespace isotherm::apps
+
+int main(int argc, char** argv) { return isotherm::apps::run(argc, argv); }

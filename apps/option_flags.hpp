@@ -1,0 +1,131 @@
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "isotherm/base/options.hpp"
+
+/// Command-line flags and JSON configuration, both made from the one list of
+/// fields an options aggregate gives through visit_fields.
+namespace isotherm::apps {
+
+using Json = nlohmann::ordered_json;
+
+namespace detail {
+
+template <class T>
+concept Enumeration = std::is_enum_v<T>;
+
+inline std::string flag_name(std::string_view field) {
+  std::string flag = "--" + std::string(field);
+  std::replace(flag.begin(), flag.end(), '_', '-');
+  return flag;
+}
+
+template <class T>
+Json field_to_json(const T& value) {
+  if constexpr (Enumeration<T>) {
+    return std::string(enum_name(value));
+  } else {
+    return value;
+  }
+}
+
+template <class T>
+void field_from_json(std::string_view field, const Json& json, T& value) {
+  try {
+    if constexpr (Enumeration<T>) {
+      value = enum_value<T>(field, json.get<std::string>());
+    } else {
+      value = json.get<T>();
+    }
+  } catch (const nlohmann::json::exception&) {
+    throw InvalidArgument(std::string(field),
+                          "has the wrong type in the configuration: " + json.dump());
+  }
+}
+
+}  // namespace detail
+
+/// The fields of `options` as a JSON object.
+template <class Options>
+Json options_to_json(const Options& options) {
+  Json json = Json::object();
+  visit_fields(options, [&json](std::string_view name, const auto& value, std::string_view) {
+    json[std::string(name)] = detail::field_to_json(value);
+  });
+  return json;
+}
+
+/// Options that take their values from defaults, then a configuration, then
+/// flags, whatever the order in which these are read.
+template <class Options>
+class FlaggedOptions {
+ public:
+  /// Adds one flag a field to `app`; both must outlive this object.
+  FlaggedOptions(CLI::App& app, Options& options) : options_(options) {
+    visit_fields(options_, [this, &app](std::string_view name, auto& value, std::string_view help) {
+      add(app, name, value, help);
+    });
+  }
+
+  /// Overwrites fields with those of `config`, then with the flags that were
+  /// given.
+  /// @throws InvalidArgument for an unknown key or a value of the wrong type.
+  void resolve(const Json& config) {
+    for (const auto& [key, value] : config.items()) take(key, value);
+    for (const auto& set : given_) set();
+  }
+
+ private:
+  template <class T>
+  void add(CLI::App& app, std::string_view name, T& value, std::string_view help) {
+    const std::string flag = detail::flag_name(name);
+    const auto remember = [this, &value](const T& given) {
+      given_.push_back([&value, given] { value = given; });
+    };
+    CLI::Option* option = nullptr;
+    if constexpr (std::same_as<T, bool>) {
+      // "--x" and "--no-x", so that a configuration can be overridden either way.
+      const std::string both = flag + ",!--no-" + flag.substr(2);
+      option = app.add_flag_function(
+          both, [remember](std::int64_t times) { remember(times > 0); }, std::string(help));
+    } else if constexpr (detail::Enumeration<T>) {
+      option = app.add_option_function<std::string>(
+          flag, [remember, flag](const std::string& text) { remember(enum_value<T>(flag, text)); },
+          std::string(help));
+      option->type_name(joined_enum_names<T>());
+      option->default_str(std::string(enum_name(value)));
+    } else {
+      option = app.add_option_function<T>(flag, remember, std::string(help));
+      option->default_str(detail::field_to_json(value).dump());
+      if constexpr (!std::is_arithmetic_v<T> && !std::same_as<T, std::string>) {
+        option->delimiter(',');
+      }
+    }
+    option->group("Method");
+  }
+
+  void take(const std::string& key, const Json& json) {
+    bool known = false;
+    visit_fields(options_, [&](std::string_view name, auto& value, std::string_view) {
+      if (name != key) return;
+      detail::field_from_json(name, json, value);
+      known = true;
+    });
+    if (!known) throw InvalidArgument(key, "is not an option of this command");
+  }
+
+  Options& options_;
+  std::vector<std::function<void()>> given_;
+};
+
+}  // namespace isotherm::apps

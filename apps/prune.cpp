@@ -1,0 +1,115 @@
+#include "isotherm/slam/prune.hpp"
+
+#include <cmath>
+#include <memory>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "console.hpp"
+#include "isotherm/slam/io/pose_graph_file.hpp"
+#include "isotherm/spectral/verdict_file.hpp"
+#include "pose_graph_input.hpp"
+#include "verbs.hpp"
+
+namespace isotherm::apps {
+namespace {
+
+using namespace slam;
+using spectral::Verdict;
+
+// JSON has no infinity; null stands for "no threshold".
+Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json to_json(const HeatRound& round) {
+  return {{"scale", round.scale},           {"threshold", finite_or_null(round.threshold)},
+          {"separation", round.separation}, {"konst", round.konst},
+          {"candidates", round.candidates}, {"pruned", round.pruned}};
+}
+
+Json to_json(const PruneResult& result, const PruneOptions& options) {
+  Json json = {{"schema", "isotherm.prune/1"},
+               {"method", enum_name(result.method)},
+               {"candidates", result.verdicts.size()},
+               {"kept", count(result.verdicts, Verdict::keep)},
+               {"pruned", count(result.verdicts, Verdict::prune)},
+               {"ambiguous", count(result.verdicts, Verdict::ambiguous)},
+               {"seconds", result.seconds},
+               {"warnings", result.warnings},
+               {"options", options_to_json(options)}};
+  if (!result.rounds.empty()) {
+    json["rounds"] = Json::array();
+    for (const auto& round : result.rounds) json["rounds"].push_back(to_json(round));
+  }
+  return json;
+}
+
+struct PruneVerb {
+  CommonFlags flags;
+  std::string input;
+  std::string output;
+  std::string verdicts;
+  std::string preset;
+  bool keep_ambiguous = false;
+  PruneOptions options;
+  std::unique_ptr<FlaggedOptions<PruneOptions>> flagged;
+
+  int run() {
+    if (preset == "datta2016") options.heat = datta2016();
+    flagged->resolve(read_config(flags));
+    if (flags.dump_config) {
+      write_json("-", options_to_json(options));
+      return kOk;
+    }
+    options.threads = flags.threads;
+    options.progress = progress_line(flags);
+    auto file = read_input_graph(input, flags);
+    const auto result = std::visit(
+        [&](auto& graph) {
+          const auto roles = edge_roles(graph);
+          auto pruned = prune(graph, roles, options);
+          graph = apply_verdicts(graph, pruned.verdicts, keep_ambiguous);
+          return pruned;
+        },
+        file.graph);
+    report(result);
+    if (!output.empty()) write_g2o(output, file);
+    if (!verdicts.empty()) spectral::write_verdicts(verdicts, result.verdicts);
+    write_json(flags.json, to_json(result, options));
+    return kOk;
+  }
+
+  void report(const PruneResult& result) const {
+    for (const auto& warning : result.warnings) warn(flags, warning);
+    for (const auto& round : result.rounds) {
+      detail_line(flags, fmt::format("scale {:>6}: {} of {} loops pruned, threshold {:.4g}",
+                                     round.scale, round.pruned, round.candidates, round.threshold));
+    }
+    say(flags,
+        fmt::format("{}: {} loops, {} kept, {} pruned, {} ambiguous, {:.2f} s",
+                    enum_name(result.method), result.verdicts.size(),
+                    count(result.verdicts, Verdict::keep), count(result.verdicts, Verdict::prune),
+                    count(result.verdicts, Verdict::ambiguous), result.seconds));
+  }
+};
+
+}  // namespace
+
+Verb add_prune(CLI::App& root) {
+  auto prune = std::make_shared<PruneVerb>();
+  CLI::App* verb = root.add_subcommand("prune", "remove false loop closures from a pose graph");
+  verb->add_option("input", prune->input, "pose graph (- for stdin)")->required();
+  verb->add_option("-o,--output", prune->output, "pruned pose graph to write (- for stdout)")
+      ->type_name("FILE");
+  verb->add_option("--verdicts", prune->verdicts, "decision and reason a loop, as CSV")
+      ->type_name("FILE");
+  verb->add_flag("--keep-ambiguous", prune->keep_ambiguous,
+                 "leave loops that are not proven either way in the graph");
+  verb->add_option("--preset", prune->preset, "datta2016: heat as the paper states it")
+      ->check(CLI::IsMember({"datta2016"}));
+  prune->flagged = std::make_unique<FlaggedOptions<PruneOptions>>(*verb, prune->options);
+  add_common_flags(*verb, prune->flags);
+  return {verb, [prune] { return prune->run(); }};
+}
+
+}  // namespace isotherm::apps

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "command.hpp"
+
+/// Every verb adds its own parser to the root command; one file a verb.
+namespace isotherm::apps {
+
+Verb add_info(CLI::App& root);
+Verb add_simulate(CLI::App& root);
+Verb add_corrupt(CLI::App& root);
+Verb add_prune(CLI::App& root);
+Verb add_label(CLI::App& root);
+Verb add_eval(CLI::App& root);
+Verb add_eval_loops(CLI::App& eval);
+
+}  // namespace isotherm::apps

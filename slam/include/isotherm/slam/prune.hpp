@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "isotherm/base/options.hpp"
+#include "isotherm/base/progress.hpp"
+#include "isotherm/slam/heat_prune.hpp"
+#include "isotherm/slam/pose_graph.hpp"
+#include "isotherm/spectral/edge_verdicts.hpp"
+
+namespace isotherm::slam {
+
+/// How false loop closures are found.
+enum class PruneMethod {
+  heat,  ///< multi-scale heat-kernel pruning, see heat_prune.hpp
+  chi2,  ///< chi-squared of each loop against odometry alone, see odometry_chi2.hpp
+};
+
+constexpr std::array<EnumName<PruneMethod>, 2> enum_names(PruneMethod) {
+  return {{{PruneMethod::heat, "heat"}, {PruneMethod::chi2, "chi2"}}};
+}
+
+struct PruneOptions {
+  PruneMethod method = PruneMethod::heat;
+  /// Probability with which a correct loop may be pruned, where a method tests
+  /// against a distribution; in (0, 1).
+  double significance = 0.01;
+  HeatPruneOptions heat;
+  ProgressCallback progress = {};
+  int threads = 0;  ///< 0: all cores; results do not depend on it
+
+  /// @throws InvalidArgument naming the field that is out of range.
+  void validate() const;
+};
+
+template <class Options, class Visitor>
+requires std::same_as<std::remove_const_t<Options>, PruneOptions>
+void visit_fields(Options& options, Visitor&& visit) {
+  visit("method", options.method, "how false loop closures are found");
+  visit("significance", options.significance,
+        "probability with which a correct loop may be pruned (chi2)");
+  visit_fields(options.heat, visit);
+}
+
+struct PruneResult {
+  PruneMethod method = PruneMethod::heat;
+  spectral::EdgeVerdicts verdicts;    ///< one a candidate, in file order
+  std::vector<HeatRound> rounds;      ///< method heat: one a scale
+  std::vector<std::string> warnings;  ///< what a user should know about the result
+  double seconds = 0.0;               ///< wall time
+};
+
+/// Judges every candidate of `roles` by the chosen method.
+/// @throws InvalidArgument, NumericalError, Cancelled
+template <class Pose>
+PruneResult prune(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                  const PruneOptions& options = {});
+
+/// The graph without the constraints that are pruned, nor, unless
+/// `keep_ambiguous`, those that are ambiguous.
+/// @throws InvalidArgument if a verdict's edge is not one of the graph's
+template <class Pose>
+PoseGraph<Pose> apply_verdicts(const PoseGraph<Pose>& graph, const spectral::EdgeVerdicts& verdicts,
+                               bool keep_ambiguous = false);
+
+}  // namespace isotherm::slam

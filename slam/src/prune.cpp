@@ -1,0 +1,111 @@
+#include "isotherm/slam/prune.hpp"
+
+#include <chrono>
+#include <string>
+
+#include "candidate_verdicts.hpp"
+#include "isotherm/base/error.hpp"
+#include "isotherm/base/statistics.hpp"
+#include "isotherm/slam/odometry_chi2.hpp"
+
+namespace isotherm::slam {
+namespace {
+
+using spectral::EdgeVerdicts;
+using spectral::Verdict;
+
+template <class Pose>
+PruneResult prune_by_heat(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                          const PruneOptions& options) {
+  HeatPruneOptions heat = options.heat;
+  heat.threads = options.threads;
+  heat.progress = options.progress;
+  auto found = heat_prune(graph, roles, heat);
+  PruneResult result;
+  result.verdicts = std::move(found.verdicts);
+  result.rounds = std::move(found.rounds);
+  if (found.unconverged > 0) {
+    result.warnings.push_back(std::to_string(found.unconverged) +
+                              " heat distances are known less exactly than asked for");
+  }
+  return result;
+}
+
+template <class Pose>
+PruneResult prune_by_chi2(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                          const PruneOptions& options) {
+  const double gate = chi_squared_quantile(1.0 - options.significance, Pose::kDof);
+  const auto checks = odometry_chi2(graph, roles);
+  PruneResult result;
+  result.verdicts = candidate_verdicts(graph, roles);
+  std::size_t unconnected = 0;
+  for (std::size_t c = 0; c < checks.size(); ++c) {
+    auto& verdict = result.verdicts[c];
+    verdict.score = checks[c].chi2;
+    verdict.threshold = gate;
+    verdict.verdict = checks[c].chi2 > gate ? Verdict::prune : Verdict::keep;
+    verdict.stage = checks[c].connected ? "chi2" : "no-odometry-path";
+    if (!checks[c].connected) ++unconnected;
+  }
+  if (unconnected > 0) {
+    result.warnings.push_back(std::to_string(unconnected) +
+                              " loops join parts without an odometry path between them; "
+                              "odometry cannot contradict them, so they are kept");
+  }
+  return result;
+}
+
+template <class Pose>
+PruneResult run_method(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                       const PruneOptions& options) {
+  switch (options.method) {
+    case PruneMethod::heat:
+      return prune_by_heat(graph, roles, options);
+    case PruneMethod::chi2:
+      return prune_by_chi2(graph, roles, options);
+  }
+  throw InvalidArgument("method", "unknown");
+}
+
+}  // namespace
+
+void PruneOptions::validate() const {
+  if (!(significance > 0.0 && significance < 1.0)) {
+    throw InvalidArgument("significance", "must be in (0, 1)");
+  }
+  if (threads < 0) throw InvalidArgument("threads", "must not be negative");
+  heat.validate();
+}
+
+template <class Pose>
+PruneResult prune(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                  const PruneOptions& options) {
+  options.validate();
+  const auto start = std::chrono::steady_clock::now();
+  PruneResult result = run_method(graph, roles, options);
+  result.method = options.method;
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+template <class Pose>
+PoseGraph<Pose> apply_verdicts(const PoseGraph<Pose>& graph, const EdgeVerdicts& verdicts,
+                               bool keep_ambiguous) {
+  std::vector<bool> keep(graph.constraints.size(), true);
+  for (const auto& verdict : verdicts) {
+    if (verdict.edge < 0 || verdict.edge >= graph.constraint_count()) {
+      throw InvalidArgument("verdicts",
+                            "edge " + std::to_string(verdict.edge) + " is not in the graph");
+    }
+    keep[verdict.edge] = verdict.verdict == Verdict::keep ||
+                         (verdict.verdict == Verdict::ambiguous && keep_ambiguous);
+  }
+  return filter_constraints(graph, keep);
+}
+
+template PruneResult prune(const PoseGraph<Pose2>&, const EdgeRoles&, const PruneOptions&);
+template PruneResult prune(const PoseGraph<Pose3>&, const EdgeRoles&, const PruneOptions&);
+template PoseGraph<Pose2> apply_verdicts(const PoseGraph<Pose2>&, const EdgeVerdicts&, bool);
+template PoseGraph<Pose3> apply_verdicts(const PoseGraph<Pose3>&, const EdgeVerdicts&, bool);
+
+}  // namespace isotherm::slam
