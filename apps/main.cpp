@@ -6,6 +6,7 @@
 
 #include "command.hpp"
 #include "console.hpp"
+#include "help_formatter.hpp"
 #include "isotherm/base/error.hpp"
 #include "verbs.hpp"
 
@@ -43,7 +44,7 @@ int run(int argc, char** argv) {
                 "isotherm");
   root.set_version_flag("--version", ISOTHERM_VERSION);
   root.require_subcommand(1);
-  root.get_formatter()->column_width(34);
+  root.formatter(std::make_shared<HelpFormatter>());
 
   const std::vector<Verb> verbs = {add_info(root),  add_simulate(root), add_corrupt(root),
                                    add_prune(root), add_label(root),    add_eval(root)};

@@ -39,6 +39,13 @@ Json field_to_json(const T& value) {
   }
 }
 
+// The default as help shows it: lists without brackets.
+template <class T>
+std::string shown(const T& value) {
+  const std::string json = field_to_json(value).dump();
+  return json.starts_with('[') ? json.substr(1, json.size() - 2) : json;
+}
+
 template <class T>
 void field_from_json(std::string_view field, const Json& json, T& value) {
   try {
@@ -106,7 +113,7 @@ class FlaggedOptions {
       option->default_str(std::string(enum_name(value)));
     } else {
       option = app.add_option_function<T>(flag, remember, std::string(help));
-      option->default_str(detail::field_to_json(value).dump());
+      option->default_str(detail::shown(value));
       if constexpr (!std::is_arithmetic_v<T> && !std::same_as<T, std::string>) {
         option->delimiter(',');
       }

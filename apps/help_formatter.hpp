@@ -1,0 +1,18 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace isotherm::apps {
+
+/// Help pages that fit a terminal of 80 columns: descriptions are wrapped beside
+/// their option instead of running on.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  HelpFormatter();
+
+  std::string make_option(const CLI::Option* option, bool is_positional) const override;
+  std::string make_option_opts(const CLI::Option* option) const override;
+  std::string make_subcommand(const CLI::App* verb) const override;
+};
+
+}  // namespace isotherm::apps
