@@ -1,0 +1,50 @@
+#pragma once
+
+#include <vector>
+
+#include "isotherm/base/random.hpp"
+#include "isotherm/slam/pose_graph.hpp"
+#include "isotherm_test/random_graphs.hpp"
+
+namespace isotherm_test {
+
+/// A chain with loops, and the poses that made it.
+template <class Pose>
+struct LoopGraph {
+  isotherm::slam::PoseGraph<Pose> graph;
+  std::vector<Pose> truth;
+};
+
+/// `n` poses on a random walk with `loops` random loops; every measurement is the
+/// true relative pose times exp of noise drawn from its own full information
+/// matrix, whose scale is `information` (noise scaled by `noise`, 0 for none).
+template <class Pose>
+LoopGraph<Pose> random_loop_graph(isotherm::Random& random, int n, int loops, double noise,
+                                  double information = 1e4) {
+  using isotherm::slam::Index;
+  LoopGraph<Pose> made;
+  made.graph = random_chain<Pose>(random, n, information);
+  made.truth.resize(static_cast<std::size_t>(n));
+  for (int v = 0; v + 1 < n; ++v) {
+    made.truth[v + 1] = made.truth[v] * Pose::exp(random_tangent<Pose>(random, 0.5));
+  }
+  for (int l = 0; l < loops; ++l) {
+    isotherm::slam::Constraint<Pose> loop;
+    loop.from = static_cast<Index>(random.index(static_cast<std::uint64_t>(n)));
+    do {
+      loop.to = static_cast<Index>(random.index(static_cast<std::uint64_t>(n)));
+    } while (loop.to == loop.from);
+    loop.information = random_information<Pose>(random, information);
+    made.graph.constraints.push_back(loop);
+  }
+  for (auto& constraint : made.graph.constraints) {
+    const Eigen::LLT<typename Pose::Matrix> factor(constraint.information);
+    const typename Pose::Tangent white = random_tangent<Pose>(random, noise);
+    const typename Pose::Tangent xi = factor.matrixU().solve(white);
+    constraint.T_from_to =
+        made.truth[constraint.from].inverse() * made.truth[constraint.to] * Pose::exp(xi);
+  }
+  return made;
+}
+
+}  // namespace isotherm_test
