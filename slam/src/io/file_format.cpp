@@ -30,15 +30,17 @@ bool contains(const std::vector<std::string_view>& tokens, std::string_view want
   return std::find(tokens.begin(), tokens.end(), wanted) != tokens.end();
 }
 
-bool starts_with_letter(std::string_view token) {
-  return std::isalpha(static_cast<unsigned char>(token.front())) != 0;
+// A letter and a number, as in A12.
+bool is_name(std::string_view token) {
+  std::uint64_t number = 0;
+  return std::isalpha(static_cast<unsigned char>(token.front())) != 0 &&
+         parse_unsigned(token.substr(1), number);
 }
 
 // PyFG names its vertices by a letter and a number where g2o has an id, and
 // gives a time stamp first (landmarks have none).
 bool has_named_vertex(const std::vector<std::string_view>& tokens) {
-  return (tokens.size() > 1 && starts_with_letter(tokens[1])) ||
-         (tokens.size() > 2 && starts_with_letter(tokens[2]));
+  return (tokens.size() > 1 && is_name(tokens[1])) || (tokens.size() > 2 && is_name(tokens[2]));
 }
 
 FileFormat format_of_record(const std::vector<std::string_view>& tokens) {

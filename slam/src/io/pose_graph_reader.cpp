@@ -3,8 +3,11 @@
 #include <string_view>
 #include <utility>
 
+#include <Eigen/LU>
+
 #include "graph_draft.hpp"
 #include "information_check.hpp"
+#include "isotherm/slam/io/file_format.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "pose_fields.hpp"
 
@@ -63,6 +66,7 @@ class Reader {
   }
 
   PoseGraphFile run() {
+    named_ = detect_format(text_) == FileFormat::pyfg;
     while (text_.next_line()) read_line();
     finish();
     return std::move(file_);
@@ -109,7 +113,7 @@ class Reader {
             spatial_, [this] { return fields_.spatial_euler(); }, kG2oOrder3);
       case Tag::fix:
         do {
-          const VertexId id = text_.unsigned_integer("a vertex id");
+          const VertexId id = vertex_id("a vertex id");
           fixed_.push_back({id, text_.location()});
         } while (!text_.at_line_end());
     }
@@ -125,7 +129,28 @@ class Reader {
       file_.report.add_note({"unknown record", text_.location(), std::string(tag),
                              "unknown record; kept as it stands but not used"});
     }
-    file_.other_lines.emplace_back(text_.line());
+    if (!named_) file_.other_lines.emplace_back(text_.line());
+  }
+
+  // PyFG names a vertex by a letter and a number: GTSAM's 64-bit key.
+  VertexId vertex_id(std::string_view what) {
+    if (!named_) return text_.unsigned_integer(what);
+    const auto name = text_.word(what);
+    std::uint64_t number = 0;
+    if (std::isalpha(static_cast<unsigned char>(name.front())) == 0 ||
+        !parse_unsigned(name.substr(1), number) || number >> 56 != 0) {
+      text_.fail("expected " + std::string(what) + ", a letter and a number below 2^56");
+    }
+    return static_cast<VertexId>(name.front()) << 56 | number;
+  }
+
+  // What is no covariance gets an information matrix that is found out as
+  // indefinite.
+  template <class Matrix>
+  static Matrix inverse_covariance(const Matrix& covariance) {
+    const Matrix inverse = covariance.inverse();
+    if (!inverse.allFinite()) return -Matrix::Identity();
+    return 0.5 * (inverse + inverse.transpose());
   }
 
   template <class Pose>
@@ -140,7 +165,8 @@ class Reader {
   template <class Pose, class ReadPose>
   void vertex(GraphDraft<Pose>& draft, const ReadPose& read_pose) {
     check_dimension<Pose>();
-    const VertexId id = text_.unsigned_integer("a vertex id");
+    if (named_) text_.number("a time stamp");
+    const VertexId id = vertex_id("a vertex id");
     draft.vertices.push_back({id, text_.line_number(), read_pose()});
   }
 
@@ -148,8 +174,9 @@ class Reader {
   void edge(GraphDraft<Pose>& draft, const ReadPose& read_pose,
             const std::array<std::pair<int, int>, kCount>& order) {
     check_dimension<Pose>();
-    const VertexId from = text_.unsigned_integer("the id of the first vertex");
-    const VertexId to = text_.unsigned_integer("the id of the second vertex");
+    if (named_) text_.number("a time stamp");
+    const VertexId from = vertex_id("the id of the first vertex");
+    const VertexId to = vertex_id("the id of the second vertex");
     if (from == to) {
       file_.report.add_note(
           {"self edge", text_.location(), std::to_string(to), "edge from a vertex to itself"});
@@ -164,6 +191,7 @@ class Reader {
     const std::uint64_t column = text_.location().column;
     for (std::size_t k = 1; k < kCount; ++k) entries[k] = text_.number("an information entry");
     constraint.information = arranged<typename Pose::Matrix>(entries, order);
+    if (named_) constraint.information = inverse_covariance(constraint.information);
     if (is_positive_semidefinite(constraint.information)) return;
     if (!reordered(constraint, entries, order, column)) {
       draft.indefinite.push_back({draft.constraints.size() - 1, column});
@@ -209,7 +237,7 @@ class Reader {
                           counts_[static_cast<std::size_t>(Tag::edge2)] +
                           counts_[static_cast<std::size_t>(Tag::edge3)] >
                       0;
-    report.format = toro ? "toro" : "g2o";
+    report.format = named_ ? "pyfg" : toro ? "toro" : "g2o";
     if (spatial_.empty()) {
       file_.graph = finish_graph(std::move(planar_), fixed_, options_, report);
     } else {
@@ -224,6 +252,7 @@ class Reader {
   GraphDraft<Pose2> planar_;
   GraphDraft<Pose3> spatial_;
   std::vector<FixedVertex> fixed_;
+  bool named_ = false;  // PyFG: time stamps, names for ids, covariances
   std::array<std::uint64_t, kTags.size()> counts_{};
 };
 

@@ -255,6 +255,25 @@ TEST(ReadPoseGraph, ToroRecords) {
   EXPECT_LT((graph.constraints[0].T_from_to.rotation_matrix() - expected).norm(), 1e-14);
 }
 
+TEST(ReadPoseGraph, PosesOfAPyfgFile) {
+  const auto file = parse(
+      "VERTEX_SE2 10.5 A0 1 2 0.5\n"
+      "VERTEX_SE2 11.5 A1 3 4 0.5\n"
+      "VERTEX_XY L0 4 6\n"
+      "EDGE_SE2 10.5 A0 A1 2 2 0 0.25 0 0 0.25 0 0.0625\n"
+      "EDGE_RANGE 10.5 A0 L0 5.1 0.04\n");
+  EXPECT_EQ(file.report.format, "pyfg");
+  const auto& graph = std::get<PoseGraph<Pose2>>(file.graph);
+  const VertexId a0 = VertexId{'A'} << 56;
+  EXPECT_THAT(graph.ids, ElementsAre(a0, a0 + 1));
+  EXPECT_EQ(graph.constraints[0].information,
+            Eigen::Matrix3d(Eigen::Vector3d(4, 4, 16).asDiagonal()));
+  EXPECT_THAT(file.report.skipped, ElementsAre(Pair("EDGE_RANGE", 1), Pair("VERTEX_XY", 1)));
+  EXPECT_THAT(file.other_lines, IsEmpty());
+  EXPECT_EQ(error_of("VERTEX_SE2 1 A0 0 0 0\nVERTEX_SE2 1 7 0 0 0\n"),
+            "f.g2o:2:14: expected a vertex id, a letter and a number below 2^56 (got '7')");
+}
+
 TEST(ReadPoseGraph, KeepsWhatItDoesNotKnow) {
   const std::string text =
       "# a comment\n"

@@ -28,8 +28,9 @@ struct PoseGraphFile {
   std::vector<std::string> other_lines;
 };
 
-/// Reads a pose graph, telling the format (g2o with SE2 or SE3:QUAT records, or
-/// TORO) by its content. `path` may be "-" for standard input, and compressed.
+/// Reads a pose graph, telling the format by its content: g2o with SE2 or
+/// SE3:QUAT records, TORO, or the poses of a PyFG file, whose names become GTSAM
+/// keys. `path` may be "-" for standard input, and compressed.
 ///
 /// One pass; memory is a small multiple of the graph's.
 /// @throws FileError if the file cannot be read, ParseError if it is malformed,
