@@ -16,6 +16,10 @@ function(isotherm_compile_options target)
   if(ISOTHERM_WARNINGS_AS_ERRORS)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
+  if(ISOTHERM_BUILD_FUZZERS)
+    # Coverage counters, by which libFuzzer finds its way.
+    target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
+  endif()
   if(ISOTHERM_SANITIZE)
     target_compile_options(${target} PRIVATE
       -fsanitize=${ISOTHERM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
