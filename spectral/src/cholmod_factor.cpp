@@ -4,31 +4,10 @@
 
 #include <cholmod.h>
 
+#include "cholmod_view.hpp"
 #include "isotherm/base/error.hpp"
 
 namespace isotherm::spectral::detail {
-namespace {
-
-/// The lower triangle of `matrix` as CHOLMOD sees it, without copying.
-cholmod_sparse lower_view(const SparseMatrix& matrix) {
-  cholmod_sparse view = {};
-  view.nrow = static_cast<std::size_t>(matrix.rows());
-  view.ncol = static_cast<std::size_t>(matrix.cols());
-  view.nzmax = static_cast<std::size_t>(matrix.nonZeros());
-  view.p = const_cast<Index*>(matrix.outerIndexPtr());
-  view.i = const_cast<Index*>(matrix.innerIndexPtr());
-  view.x = const_cast<double*>(matrix.valuePtr());
-  view.stype = -1;
-  view.itype = CHOLMOD_INT;
-  view.xtype = CHOLMOD_REAL;
-  view.dtype = CHOLMOD_DOUBLE;
-  view.sorted = 1;
-  view.packed = 1;
-  return view;
-}
-
-}  // namespace
-
 struct CholmodFactor::Impl {
   cholmod_common common = {};
   cholmod_factor* factor = nullptr;
@@ -59,7 +38,7 @@ CholmodFactor::CholmodFactor(const SparseMatrix& matrix, FactorKind kind)
     common.supernodal = CHOLMOD_SIMPLICIAL;
     common.final_ll = 0;
   }
-  auto view = lower_view(matrix);
+  auto view = cholmod_lower_view(matrix);
   impl_->factor = cholmod_analyze(&view, &common);
   if (impl_->factor == nullptr) throw NumericalError("factorisation", "symbolic analysis failed");
   cholmod_factorize(&view, impl_->factor, &common);

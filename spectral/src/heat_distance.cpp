@@ -7,19 +7,11 @@
 
 #include "heat_bracket.hpp"
 #include "isotherm/spectral/laplacian.hpp"
+#include "pair_pattern.hpp"
 #include "parallel.hpp"
 
 namespace isotherm::spectral {
 namespace {
-
-void check_pairs(std::span<const VertexPair> pairs, Index vertex_count) {
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const auto inside = [vertex_count](Index v) { return v >= 0 && v < vertex_count; };
-    if (inside(pairs[k].from) && inside(pairs[k].to)) continue;
-    throw InvalidArgument("pairs[" + std::to_string(k) + "]",
-                          "vertex outside [0, " + std::to_string(vertex_count) + ")");
-  }
-}
 
 void check_scales(std::span<const double> scales) {
   for (std::size_t k = 0; k < scales.size(); ++k) {
@@ -100,7 +92,7 @@ HeatDistanceResult HeatDistance::evaluate(std::span<const VertexPair> pairs,
                                           std::span<const double> scales,
                                           std::span<const double> thresholds) const {
   const auto start = std::chrono::steady_clock::now();
-  check_pairs(pairs, static_cast<Index>(impl_->laplacian.rows()));
+  detail::check_pairs(pairs, static_cast<Index>(impl_->laplacian.rows()));
   check_scales(scales);
   if (!thresholds.empty() && thresholds.size() != scales.size()) {
     throw InvalidArgument("thresholds", "must have one entry per scale");
