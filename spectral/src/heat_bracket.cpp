@@ -3,29 +3,30 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace isotherm::spectral::detail {
 namespace {
 
 constexpr double kSquaredNorm = 2.0;  // of e_i - e_j
 
-/// What rounding may have done to a quadrature value: the sum over the nodes,
-/// and a displacement of the nodes by a few units in the last place of the norm.
-double rounding_allowance(int steps, double scale, double norm) {
+/// What rounding in the Lanczos process may have done: a displacement of the
+/// spectrum by a few units in the last place of the norm.
+double lanczos_rounding(int steps, double scale, double norm) {
   constexpr double kUnit = std::numeric_limits<double>::epsilon();
-  return kSquaredNorm * kUnit * (16.0 + steps + 16.0 * scale * norm);
+  return kUnit * (16.0 + steps + 16.0 * scale * norm);
 }
 
-double integrate_exponential(const QuadratureRule& rule, double scale) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
-    sum += rule.weights[k] * std::exp(-scale * rule.nodes[k]);
+/// The table's approximation that takes no more than a hundredth of the tolerance.
+const RationalExponential& approximation_for(double tolerance) {
+  for (const auto& rational : kRationalExponentials) {
+    if (4.0 * kSquaredNorm * rational.error <= 0.01 * tolerance) return rational;
   }
-  return kSquaredNorm * sum;
+  return kRationalExponentials.back();
 }
 
-/// A quadrature rule costs about this many matrix entries per squared step.
-constexpr std::int64_t kRuleCost = 6;
+/// Evaluating a rule costs about this many matrix entries a step.
+constexpr std::int64_t kRuleCost = 10;
 constexpr int kFirstCheck = 3;
 
 }  // namespace
@@ -36,75 +37,98 @@ bool HeatGoal::reached(const CertifiedValue& value, std::size_t scale) const {
   return value.lower > thresholds[scale] || value.upper <= thresholds[scale];
 }
 
+HeatBracketer::HeatBracketer(const SparseMatrix& laplacian, double tolerance)
+    : lanczos_(laplacian), exponential_(approximation_for(tolerance)) {}
+
 int HeatBracketer::run(VertexPair pair, const HeatGoal& goal, std::span<CertifiedValue> values) {
   std::fill(values.begin(), values.end(), CertifiedValue{1.0, 0.0, kSquaredNorm});
+  order_.resize(values.size());
+  std::iota(order_.begin(), order_.end(), 0);
+  std::stable_sort(order_.begin(), order_.end(), [&goal](std::size_t a, std::size_t b) {
+    return goal.scales[a] > goal.scales[b];
+  });
   lanczos_.start(pair.from, pair.to);
-  work_ = 0;
-  // Rules are recomputed when as much has been spent on steps since the last time.
-  std::int64_t work_at_check = 0;
-  int next_at_most = kFirstCheck;
+  radau_diagonal_.clear();
+  rule_work_ = 0;
+  work_at_.assign(values.size(), 0);
+  // Rules are evaluated when as much has been spent on steps since the last time.
+  std::int64_t checked_at = 0;
   for (;;) {
     lanczos_.step();
-    const std::int64_t steps = lanczos_.steps();
-    const bool last = lanczos_.exhausted() || steps >= goal.max_steps;
-    const bool worth = lanczos_.work() - work_at_check >= kRuleCost * steps * steps;
-    if (!last && steps < kFirstCheck) continue;
-    if (!last && !worth && steps < next_at_most) continue;
-    work_at_check = lanczos_.work();
-    next_at_most = static_cast<int>(steps + std::max<std::int64_t>(2, steps / 4));
-    work_ += 2 * kRuleCost * steps * steps;
-    if (tighten(goal, values) || last) break;
+    const int steps = lanczos_.steps();
+    const bool last = lanczos_.exhausted() || steps >= goal.max_steps ||
+                      lanczos_.work() + rule_work_ >= goal.max_work;
+    const bool worth = steps >= kFirstCheck && lanczos_.work() - checked_at >= kRuleCost * steps;
+    if (!last && !worth) continue;
+    checked_at = lanczos_.work();
+    extend_to_radau();
+    if (settled_all(goal, values) || last) break;
   }
-  work_ += lanczos_.work();
+  for (std::size_t s = 0; s < values.size(); ++s) {
+    if (!goal.reached(values[s], s)) tighten(goal.scales[s], values[s]);
+  }
   return lanczos_.steps();
 }
 
-/// Intersects the brackets with those of the current rules; true when all are
-/// good enough.
-bool HeatBracketer::tighten(const HeatGoal& goal, std::span<CertifiedValue> values) {
-  const std::span diagonal(lanczos_.diagonal());
-  const std::span off_diagonal(lanczos_.off_diagonal());
-  gauss_quadrature(diagonal, off_diagonal.first(diagonal.size() - 1), gauss_);
-  const bool has_upper = !lanczos_.exhausted() && radau_rule();
-
-  bool all_reached = true;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    auto& bracket = values[k];
-    if (goal.reached(bracket, k)) continue;
-    const double allowance =
-        rounding_allowance(lanczos_.steps(), goal.scales[k], lanczos_.norm_bound());
-    const double below = integrate_exponential(gauss_, goal.scales[k]);
-    bracket.lower = std::max(bracket.lower, below - allowance);
-    if (lanczos_.exhausted()) {
-      bracket.upper = std::min(bracket.upper, below + allowance);
-    } else if (has_upper) {
-      const double above = integrate_exponential(radau_, goal.scales[k]);
-      bracket.upper = std::min(bracket.upper, above + allowance);
-    }
-    bracket.value = 0.5 * (bracket.lower + bracket.upper);
-    all_reached = all_reached && goal.reached(bracket, k);
+/// Brings brackets up to date and says whether all that are required are good
+/// enough, or as good as rounding lets them become. The larger the scale the
+/// later it is settled, so that one that is not makes looking at smaller ones
+/// pointless, unless thresholds decide or every scale is watched.
+bool HeatBracketer::settled_all(const HeatGoal& goal, std::span<CertifiedValue> values) {
+  constexpr double kSaturated = 2.2;  // two allowances, and a little between the rules
+  const bool look_at_all = goal.watch_every_scale || !goal.thresholds.empty();
+  bool all = true;
+  for (const std::size_t s : order_) {
+    if (!goal.required(s) || goal.reached(values[s], s)) continue;
+    tighten(goal.scales[s], values[s]);
+    work_at_[s] = lanczos_.work() + rule_work_;
+    const bool settled =
+        goal.reached(values[s], s) || values[s].width() <= kSaturated * allowance(goal.scales[s]);
+    all = all && settled;
+    if (!all && !look_at_all) return false;
   }
-  return all_reached;
+  return all;
+}
+
+/// What evaluating a rule, and rounding before it, may have cost.
+double HeatBracketer::allowance(double scale) const {
+  const double norm = lanczos_.norm_bound();
+  return kSquaredNorm *
+         (exponential_.error_bound(scale, norm) + lanczos_rounding(lanczos_.steps(), scale, norm));
+}
+
+/// Intersects a bracket with the one of the current rules.
+void HeatBracketer::tighten(double scale, CertifiedValue& bracket) {
+  const std::span off_diagonal(lanczos_.off_diagonal());
+  const double below = kSquaredNorm * exponential_(lanczos_.diagonal(), off_diagonal, scale);
+  rule_work_ += kRuleCost * lanczos_.steps();
+  bracket.lower = std::max(bracket.lower, below - allowance(scale));
+  if (lanczos_.exhausted()) {
+    bracket.upper = std::min(bracket.upper, below + allowance(scale));
+  } else if (!radau_diagonal_.empty()) {
+    const double above = kSquaredNorm * exponential_(radau_diagonal_, off_diagonal, scale);
+    rule_work_ += kRuleCost * lanczos_.steps();
+    bracket.upper = std::min(bracket.upper, above + allowance(scale));
+  }
+  bracket.value = 0.5 * (bracket.lower + bracket.upper);
 }
 
 /// The Lanczos matrix extended by one row so that 0 becomes a node: its last
-/// entry is beta_m^2 / d_m with d_m the last pivot of T_m. False where rounding
-/// has made T_m indefinite, and the rule would bound nothing.
-bool HeatBracketer::radau_rule() {
+/// entry is beta_m^2 / d_m with d_m the last pivot of T_m. Where rounding has
+/// made T_m indefinite there is no such rule, and an earlier one stands.
+void HeatBracketer::extend_to_radau() {
   const auto& alpha = lanczos_.diagonal();
   const auto& beta = lanczos_.off_diagonal();
   double pivot = alpha[0];
   for (std::size_t k = 1; k < alpha.size(); ++k) {
-    if (!(pivot > 0.0)) return false;
+    if (!(pivot > 0.0)) return;
     pivot = alpha[k] - beta[k - 1] * beta[k - 1] / pivot;
   }
-  if (!(pivot > 0.0)) return false;
+  if (!(pivot > 0.0)) return;
   const double last = beta.back() * beta.back() / pivot;
-  if (!std::isfinite(last)) return false;
+  if (!std::isfinite(last)) return;
   radau_diagonal_ = alpha;
   radau_diagonal_.push_back(last);
-  gauss_quadrature(radau_diagonal_, beta, radau_);
-  return true;
 }
 
 }  // namespace isotherm::spectral::detail

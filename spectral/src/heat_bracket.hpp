@@ -1,11 +1,13 @@
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "isotherm/spectral/heat_distance.hpp"
 #include "local_lanczos.hpp"
-#include "tridiagonal.hpp"
+#include "tridiagonal_exponential.hpp"
 
 namespace isotherm::spectral::detail {
 
@@ -15,7 +17,11 @@ struct HeatGoal {
   double tolerance = 0.0;
   std::span<const double> thresholds;  ///< one a scale, or empty
   int max_steps = 0;
+  std::vector<bool> optional = {};  ///< scales that a run need not reach; none if empty
+  bool watch_every_scale = false;   ///< note when each scale is reached, not only the last
+  std::int64_t max_work = std::numeric_limits<std::int64_t>::max();  ///< ends a run
 
+  bool required(std::size_t scale) const { return optional.empty() || !optional[scale]; }
   bool reached(const CertifiedValue& value, std::size_t scale) const;
 };
 
@@ -24,24 +30,30 @@ struct HeatGoal {
 /// above (exp(-t lambda) is completely monotone: Golub and Meurant 2010, ch. 6).
 class HeatBracketer {
  public:
-  explicit HeatBracketer(const SparseMatrix& laplacian) : lanczos_(laplacian) {}
+  /// `tolerance` is the bracket width aimed at; it sets how accurately the
+  /// rules are evaluated.
+  HeatBracketer(const SparseMatrix& laplacian, double tolerance);
 
   /// Fills `values`, one entry a scale, and returns the number of steps taken.
   /// @pre from != to.
   int run(VertexPair pair, const HeatGoal& goal, std::span<CertifiedValue> values);
 
-  /// Matrix entries and quadrature operations spent by the last run.
-  std::int64_t work() const { return work_; }
+  /// Effort of the last run until `scale` was bracketed well enough (or until
+  /// the end), in units of a matrix entry multiplied.
+  std::int64_t work_at(std::size_t scale) const { return work_at_[scale]; }
 
  private:
-  bool tighten(const HeatGoal& goal, std::span<CertifiedValue> values);
-  bool radau_rule();
+  bool settled_all(const HeatGoal& goal, std::span<CertifiedValue> values);
+  double allowance(double scale) const;
+  void tighten(double scale, CertifiedValue& bracket);
+  void extend_to_radau();
 
   LocalLanczos lanczos_;
-  QuadratureRule gauss_;
-  QuadratureRule radau_;
-  std::vector<double> radau_diagonal_;
-  std::int64_t work_ = 0;
+  TridiagonalExponential exponential_;
+  std::vector<std::size_t> order_;      // scales, largest first
+  std::vector<double> radau_diagonal_;  // of the latest rule with a node at 0, if any
+  std::int64_t rule_work_ = 0;
+  std::vector<std::int64_t> work_at_;
 };
 
 }  // namespace isotherm::spectral::detail

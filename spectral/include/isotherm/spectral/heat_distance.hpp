@@ -40,12 +40,14 @@ struct CertifiedValue {
 enum class HeatMethod {
   automatic,  ///< in options: the cheaper of the two by counted operations
   lanczos,    ///< local Lanczos, bracketed by Gauss and Gauss-Radau quadrature
+  rational,   ///< rational approximation of exp, selected inversion of each shifted L
   exact,      ///< in results: both ends coincide, nothing to compute
 };
 
-constexpr std::array<EnumName<HeatMethod>, 3> enum_names(HeatMethod) {
+constexpr std::array<EnumName<HeatMethod>, 4> enum_names(HeatMethod) {
   return {{{HeatMethod::automatic, "automatic"},
            {HeatMethod::lanczos, "lanczos"},
+           {HeatMethod::rational, "rational"},
            {HeatMethod::exact, "exact"}}};
 }
 
@@ -53,11 +55,12 @@ struct HeatDistanceOptions {
   /// Largest allowed width of a bracket: absolute, on D in [0, 2]; > 0.
   double tolerance = 1e-6;
   HeatMethod method = HeatMethod::automatic;
-  /// Most Lanczos steps a pair; >= 1. A run takes about sqrt(t * lambda_max) steps.
+  /// Most Lanczos steps a pair; >= 1. A run takes about sqrt(t * lambda_max)
+  /// steps. Pairs that need more go to the rational method, if it may be used.
   int max_steps = 1000;
   /// Threads to use; 0 means all cores. The values do not depend on it.
   int threads = 0;
-  /// Called with the number of pairs done.
+  /// Called with the number of pairs, or of factorisations, done.
   ProgressCallback progress = {};
 
   /// @throws InvalidArgument naming the field that is out of range.

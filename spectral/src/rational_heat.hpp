@@ -1,0 +1,33 @@
+#pragma once
+
+#include <span>
+
+#include "isotherm/base/progress.hpp"
+#include "isotherm/spectral/heat_distance.hpp"
+#include "rational_exponential_table.hpp"
+#include "supernodal_structure.hpp"
+
+namespace isotherm::spectral::detail {
+
+/// The cheapest rational approximation whose error leaves a heat distance's
+/// bracket narrower than `tolerance`; the most accurate one if none does.
+const RationalExponential& rational_exponential_for(double tolerance);
+
+/// Rough time of all factorisations and inversions that one scale takes, in
+/// nanoseconds on one thread. Counted, not measured: the same on every machine.
+double rational_cost(const SupernodalStructure& structure, const RationalExponential& rational);
+
+/// Heat distances of the queried pairs at every scale through
+/// exp(-x) = constant + sum_k residue_k / (x + shift_k), one selected inversion
+/// of scale * L + shift_k * I a term. `values` is scales x pairs; only queried
+/// pairs are written. A bracket's width is twice the approximation's uniform
+/// error (on [0, infinity), hence for any spectrum) plus an allowance for
+/// rounding, made from the residual of every inversion; a scale whose
+/// factorisation broke down gets [0, 2].
+/// @throws Cancelled.
+void rational_heat_distances(const SupernodalStructure& structure, const FrontQueries& queries,
+                             const RationalExponential& rational, std::span<const double> scales,
+                             int threads, const ProgressCallback& progress,
+                             std::span<CertifiedValue> values);
+
+}  // namespace isotherm::spectral::detail
