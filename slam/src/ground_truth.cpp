@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <type_traits>
 #include <variant>
 
-#include "isotherm/base/csv.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/text_reader.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
+#include "isotherm/slam/io/trajectory_file.hpp"
+#include "isotherm/slam/trajectory.hpp"
 
 namespace isotherm::slam {
 namespace {
@@ -56,34 +59,14 @@ std::vector<double> read_timestamps(const std::string& path) {
   return times;
 }
 
-TimedPoses<Pose2> read_timed_csv(const std::string& path) {
-  CsvReader csv(path);
-  TimedPoses<Pose2> samples;
-  if (!csv.next_row()) throw ParseError({path, 0, 0}, "", "holds no ground truth");
-  const auto time = csv.column("time", 0);
-  const auto x = csv.column("x", 1);
-  const auto y = csv.column("y", 2);
-  const auto theta = csv.column("theta", 3);
-  do {
-    samples.push_back({csv.number(time, "time in seconds"),
-                       {csv.number(x, "x in metres"), csv.number(y, "y in metres"),
-                        csv.number(theta, "theta in radians")}});
-    if (samples.size() > 1 && samples.back().time < samples[samples.size() - 2].time) {
-      csv.fail(time, "expected times that do not go back");
-    }
-  } while (csv.next_row());
-  return samples;
-}
-
 template <class Pose>
 std::vector<std::optional<Pose>> from_pose_graph(const PoseGraph<Pose>& graph,
-                                                 const std::string& path) {
-  const auto file = read_pose_graph(path);
+                                                 const PoseGraphFile& file) {
   const auto* truth = std::get_if<PoseGraph<Pose>>(&file.graph);
   if (truth == nullptr) {
-    throw InvalidArgument("ground-truth", path + " has poses of another dimension than the graph");
+    throw InvalidArgument("ground-truth", file.report.path + " has poses of another dimension than the graph");
   }
-  if (truth->poses.empty()) throw InvalidArgument("ground-truth", path + " has no vertex poses");
+  if (truth->poses.empty()) throw InvalidArgument("ground-truth", file.report.path + " has no vertex poses");
   std::vector<std::optional<Pose>> poses(graph.ids.size());
   for (std::size_t v = 0; v < poses.size(); ++v) {
     if (const auto position = truth->find(graph.ids[v])) poses[v] = truth->poses[*position];
@@ -115,23 +98,45 @@ std::vector<std::optional<Pose>> match_samples(const PoseGraph<Pose>& graph,
   return poses;
 }
 
-// Records of a pose graph start with a tag, trajectories with a number or '#'.
-bool starts_with_tag(const std::string& path) {
-  TextReader reader(path);
-  while (reader.next_line()) {
-    const auto word = reader.word();
-    if (word.empty() || word.front() == '#') continue;
-    return std::isupper(static_cast<unsigned char>(word.front())) != 0;
+// A pose in space as seen from above. KITTI poses are those of a camera, whose z
+// points forward and x to the right; the others have z up.
+Pose2 flatten(const Pose3& pose, FileFormat format) {
+  const Eigen::Matrix3d r = pose.rotation_matrix();
+  const Eigen::Vector3d& t = pose.translation();
+  if (format == FileFormat::kitti) return {t.z(), -t.x(), std::atan2(-r(0, 2), r(2, 2))};
+  return {t.x(), t.y(), std::atan2(r(1, 0), r(0, 0))};
+}
+
+template <class Pose, class Sample>
+Pose adapt(const Sample& pose, FileFormat format) {
+  if constexpr (std::is_same_v<Pose, Sample>) {
+    return pose;
+  } else if constexpr (std::is_same_v<Pose, Pose2>) {
+    return flatten(pose, format);
+  } else {
+    return lift(pose);
   }
-  throw ParseError({path, 0, 0}, "", "is empty");
 }
 
-TimedPoses<Pose2> read_samples(const PoseGraph<Pose2>&, const std::string& path) {
-  return read_timed_csv(path);
+// The samples of a trajectory in order of time; without times, in file order.
+template <class Pose>
+TimedPoses<Pose> timed_poses(const AnyTrajectory& any, FileFormat format) {
+  return std::visit(
+      [format](const auto& trajectory) {
+        TimedPoses<Pose> samples;
+        for (std::size_t k = 0; k < trajectory.poses.size(); ++k) {
+          const double time = trajectory.timestamps.empty() ? 0.0 : trajectory.timestamps[k];
+          samples.push_back({time, adapt<Pose>(trajectory.poses[k], format)});
+        }
+        std::stable_sort(samples.begin(), samples.end(),
+                         [](const auto& a, const auto& b) { return a.time < b.time; });
+        return samples;
+      },
+      any);
 }
 
-TimedPoses<Pose3> read_samples(const PoseGraph<Pose3>&, const std::string& path) {
-  throw InvalidArgument("ground-truth", path + " holds poses of the plane; the graph is in space");
+bool has_timestamps(const AnyTrajectory& any) {
+  return std::visit([](const auto& trajectory) { return !trajectory.timestamps.empty(); }, any);
 }
 
 }  // namespace
@@ -140,8 +145,17 @@ template <class Pose>
 std::vector<std::optional<Pose>> read_ground_truth(const PoseGraph<Pose>& graph,
                                                    const GroundTruthSource& source) {
   if (!(source.max_gap >= 0.0)) throw InvalidArgument("max-gap", "must not be negative");
-  if (starts_with_tag(source.path)) return from_pose_graph(graph, source.path);
-  return match_samples(graph, read_samples(graph, source.path), source);
+  TextReader reader(source.path);
+  const FileFormat format = detect_format(reader);
+  if (content_of(format) == FileContent::pose_graph) {
+    return from_pose_graph(graph, read_pose_graph(reader));
+  }
+  const auto file = read_trajectory(reader);
+  if (!source.timestamps.empty() && !has_timestamps(file.trajectory)) {
+    throw InvalidArgument("ground-truth", source.path + " has no times to match with " +
+                                              source.timestamps);
+  }
+  return match_samples(graph, timed_poses<Pose>(file.trajectory, format), source);
 }
 
 template std::vector<std::optional<Pose2>> read_ground_truth(const PoseGraph<Pose2>&,

@@ -10,8 +10,8 @@ namespace isotherm::slam {
 
 /// Where ground truth comes from and how it is matched to vertices.
 struct GroundTruthSource {
-  /// A pose graph (g2o, matched by vertex id), or a trajectory: CSV with
-  /// `time,x,y,theta` (plane), TUM, KITTI or EuRoC.
+  /// A pose graph (g2o or TORO, matched by vertex id), or a trajectory in any
+  /// format that read_trajectory knows.
   std::string path;
   /// One time in seconds a line, line k being vertex k: a trajectory with times is
   /// then interpolated at them. Without it, pose k belongs to vertex k.
@@ -25,8 +25,9 @@ struct GroundTruthSource {
 ///
 /// Between samples translation is interpolated linearly and rotation along the
 /// shorter arc; before the first and after the last sample the nearest one holds.
-/// For a graph in the plane, poses in space are taken as KITTI camera poses: x is
-/// the camera's z, y its -x.
+/// For a graph in the plane, poses in space are seen from above: KITTI's camera
+/// poses along the camera's y (x is the camera's z, y its -x), others along z.
+/// Planar ground truth of a graph in space is lifted to z = 0.
 /// @throws FileError, ParseError; InvalidArgument if times are needed and absent, or
 ///   a trajectory without times has another length than the graph
 template <class Pose>
