@@ -9,6 +9,7 @@
 #include "isotherm/slam/ground_truth.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm/slam/odometry.hpp"
+#include "option_verb.hpp"
 #include "pose_graph_input.hpp"
 #include "verbs.hpp"
 
@@ -17,21 +18,14 @@ namespace {
 
 using namespace slam;
 
-struct CorruptVerb {
-  CommonFlags flags;
+struct CorruptVerb : OptionVerb<CorruptOptions> {
   std::string input;
   std::string output;
   std::string labels;
   std::string ground_truth;
-  CorruptOptions options;
-  std::unique_ptr<FlaggedOptions<CorruptOptions>> flagged;
 
   int run() {
-    flagged->resolve(read_config(flags));
-    if (flags.dump_config) {
-      write_json("-", options_to_json(options));
-      return kOk;
-    }
+    if (resolve_or_dump()) return kOk;
     options.seed = flags.seed;
     const auto file = read_input_graph(input, flags);
     return std::visit([this](const auto& graph) { return corrupt_graph(graph); }, file.graph);
@@ -90,8 +84,7 @@ Verb add_corrupt(CLI::App& root) {
   verb->add_option("--ground-truth", corrupt->ground_truth,
                    "true poses as g2o; without it the input's own poses count as true")
       ->type_name("FILE");
-  corrupt->flagged = std::make_unique<FlaggedOptions<CorruptOptions>>(*verb, corrupt->options);
-  add_common_flags(*verb, corrupt->flags);
+  corrupt->add_flags(*verb);
   return {verb, [corrupt] { return corrupt->run(); }};
 }
 

@@ -6,6 +6,7 @@
 #include "console.hpp"
 #include "isotherm/slam/ground_truth.hpp"
 #include "isotherm/slam/labels.hpp"
+#include "option_verb.hpp"
 #include "pose_graph_input.hpp"
 #include "verbs.hpp"
 
@@ -14,20 +15,13 @@ namespace {
 
 using namespace slam;
 
-struct LabelVerb {
-  CommonFlags flags;
+struct LabelVerb : OptionVerb<LabelOptions> {
   std::string input;
   std::string output;
   GroundTruthSource truth;
-  LabelOptions options;
-  std::unique_ptr<FlaggedOptions<LabelOptions>> flagged;
 
   int run() {
-    flagged->resolve(read_config(flags));
-    if (flags.dump_config) {
-      write_json("-", options_to_json(options));
-      return kOk;
-    }
+    if (resolve_or_dump()) return kOk;
     const auto file = read_input_graph(input, flags);
     const auto labels = std::visit([this](const auto& graph) { return label(graph); }, file.graph);
     write_labels(output, labels);
@@ -69,8 +63,7 @@ Verb add_label(CLI::App& root) {
   verb->add_option("-o,--output", label->output, "labels to write, as CSV (- for stdout)")
       ->required()
       ->type_name("FILE");
-  label->flagged = std::make_unique<FlaggedOptions<LabelOptions>>(*verb, label->options);
-  add_common_flags(*verb, label->flags);
+  label->add_flags(*verb);
   return {verb, [label] { return label->run(); }};
 }
 

@@ -8,7 +8,9 @@
 
 #include "console.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
+#include "isotherm/slam/trusted_edges.hpp"
 #include "isotherm/spectral/verdict_file.hpp"
+#include "option_verb.hpp"
 #include "pose_graph_input.hpp"
 #include "verbs.hpp"
 
@@ -44,29 +46,24 @@ Json to_json(const PruneResult& result, const PruneOptions& options) {
   return json;
 }
 
-struct PruneVerb {
-  CommonFlags flags;
+struct PruneVerb : OptionVerb<PruneOptions> {
   std::string input;
   std::string output;
   std::string verdicts;
   std::string preset;
+  std::string trusted;
   bool keep_ambiguous = false;
-  PruneOptions options;
-  std::unique_ptr<FlaggedOptions<PruneOptions>> flagged;
 
   int run() {
     if (preset == "datta2016") options.heat = datta2016();
-    flagged->resolve(read_config(flags));
-    if (flags.dump_config) {
-      write_json("-", options_to_json(options));
-      return kOk;
-    }
+    if (resolve_or_dump()) return kOk;
     options.threads = flags.threads;
     options.progress = progress_line(flags);
     auto file = read_input_graph(input, flags);
     const auto result = std::visit(
         [&](auto& graph) {
-          const auto roles = edge_roles(graph);
+          const auto roles =
+              trusted.empty() ? edge_roles(graph) : read_trusted_edges(trusted, graph);
           auto pruned = prune(graph, roles, options);
           graph = apply_verdicts(graph, pruned.verdicts, keep_ambiguous);
           return pruned;
@@ -105,10 +102,12 @@ Verb add_prune(CLI::App& root) {
       ->type_name("FILE");
   verb->add_flag("--keep-ambiguous", prune->keep_ambiguous,
                  "leave loops that are not proven either way in the graph");
+  verb->add_option("--trusted", prune->trusted,
+                   "CSV of edges to trust in place of odometry (edge, or from,to)")
+      ->type_name("FILE");
   verb->add_option("--preset", prune->preset, "datta2016: heat as the paper states it")
       ->check(CLI::IsMember({"datta2016"}));
-  prune->flagged = std::make_unique<FlaggedOptions<PruneOptions>>(*verb, prune->options);
-  add_common_flags(*verb, prune->flags);
+  prune->add_flags(*verb);
   return {verb, [prune] { return prune->run(); }};
 }
 

@@ -6,6 +6,7 @@
 
 #include "console.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
+#include "option_verb.hpp"
 #include "verbs.hpp"
 
 namespace isotherm::apps {
@@ -13,19 +14,12 @@ namespace {
 
 using namespace slam;
 
-struct SimulateCity {
-  CommonFlags flags;
+struct SimulateCity : OptionVerb<CityOptions> {
   std::string output;
   std::string ground_truth;
-  CityOptions options;
-  std::unique_ptr<FlaggedOptions<CityOptions>> flagged;
 
   int run() {
-    flagged->resolve(read_config(flags));
-    if (flags.dump_config) {
-      write_json("-", options_to_json(options));
-      return kOk;
-    }
+    if (resolve_or_dump()) return kOk;
     options.seed = flags.seed;
     const auto city = simulate_city(options);
     const auto roles = edge_roles(city.graph);
@@ -65,8 +59,7 @@ Verb add_simulate(CLI::App& root) {
       ->type_name("FILE");
   verb->add_option("--ground-truth", city->ground_truth, "true poses to write, as g2o")
       ->type_name("FILE");
-  city->flagged = std::make_unique<FlaggedOptions<CityOptions>>(*verb, city->options);
-  add_common_flags(*verb, city->flags);
+  city->add_flags(*verb);
   return {simulate, [city] { return city->run(); }};
 }
 

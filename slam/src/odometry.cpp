@@ -1,6 +1,7 @@
 #include "isotherm/slam/odometry.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <string>
 
 #include "isotherm/base/error.hpp"
@@ -10,6 +11,12 @@ namespace isotherm::slam {
 namespace {
 
 constexpr Index kBlock = 16;
+
+// Only edges between neighbours make a chain; a user may trust others as well.
+template <class Pose>
+bool is_step(const Constraint<Pose>& constraint) {
+  return std::abs(constraint.from - constraint.to) == 1;
+}
 
 // The step from the lower to the higher vertex, whatever the edge's direction.
 template <class Pose>
@@ -42,9 +49,7 @@ OdometryChain<Pose>::OdometryChain(const PoseGraph<Pose>& graph, const EdgeRoles
   for (const Index k : roles.odometry) {
     const auto& constraint = graph.constraints[k];
     const Index first = std::min(constraint.from, constraint.to);
-    if (std::max(constraint.from, constraint.to) != first + 1) {
-      throw InvalidArgument("roles", "odometry must join neighbouring vertices");
-    }
+    if (!is_step(constraint) || joined[first]) continue;
     joined[first] = true;
     steps_[first] = forward_step(constraint);
   }
@@ -114,7 +119,9 @@ std::vector<Pose> odometry_poses(const PoseGraph<Pose>& graph, const EdgeRoles& 
   std::vector<const Constraint<Pose>*> step_to(graph.ids.size(), nullptr);
   for (const Index k : roles.odometry) {
     const auto& constraint = graph.constraints[k];
-    step_to[std::max(constraint.from, constraint.to)] = &constraint;
+    if (!is_step(constraint)) continue;
+    auto& step = step_to[std::max(constraint.from, constraint.to)];
+    if (step == nullptr) step = &constraint;
   }
   std::vector<Pose> poses(graph.ids.size());
   for (std::size_t v = 0; v < poses.size(); ++v) {

@@ -30,7 +30,8 @@ UncertainPose<Pose> inverse(const UncertainPose<Pose>& pose);
 template <class Pose>
 class OdometryChain {
  public:
-  /// Uses only roles.odometry. O(n).
+  /// Uses the first of roles.odometry between each two neighbours in the order of
+  /// ids; trusted edges between other vertices are left out. O(n).
   OdometryChain(const PoseGraph<Pose>& graph, const EdgeRoles& roles);
 
   Index vertex_count() const noexcept { return static_cast<Index>(chain_.size()); }
