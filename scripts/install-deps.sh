@@ -7,7 +7,7 @@ packages=(
   # tools
   build-essential cmake ninja-build ccache
   # libraries
-  libboost-dev libeigen3-dev libspectra-dev libsuitesparse-dev libtbb-dev zlib1g-dev
+  libboost-dev libcgal-dev libeigen3-dev libspectra-dev libsuitesparse-dev libtbb-dev zlib1g-dev
   libfast-float-dev libcli11-dev nlohmann-json3-dev libfmt-dev
   # tests
   libgtest-dev libgmock-dev librapidcheck-dev

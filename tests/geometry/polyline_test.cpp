@@ -36,6 +36,16 @@ TEST(Polyline, FewerThanTwoPointsHaveNoLength) {
   EXPECT_EQ(Polyline<2>({{1, 1}}).length(), 0.0);
 }
 
+TEST(Polyline, PointsByArcLength) {
+  const Polyline<2> line({{0, 0}, {2, 0}, {2, 0}, {2, 3}});
+  EXPECT_EQ(line.at(-1.0), Eigen::Vector2d(0, 0));
+  EXPECT_EQ(line.at(0.5), Eigen::Vector2d(0.5, 0));
+  EXPECT_EQ(line.at(2.0), Eigen::Vector2d(2, 0));
+  EXPECT_EQ(line.at(3.5), Eigen::Vector2d(2, 1.5));
+  EXPECT_EQ(line.at(9.0), Eigen::Vector2d(2, 3));
+  EXPECT_THROW(Polyline<3>().at(0.0), InvalidArgument);
+}
+
 TEST(Polyline, RejectsCoordinatesThatAreNotFinite) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(Polyline<2>({{0, 0}, {nan, 1}}), InvalidArgument);

@@ -28,6 +28,10 @@ class Polyline {
   /// Total length in metres; 0 for fewer than two points.
   double length() const noexcept { return arc_lengths_.empty() ? 0.0 : arc_lengths_.back(); }
 
+  /// The point `arc_length` metres along the curve, or the end that is nearest to
+  /// it. O(log n). @throws InvalidArgument if there are no points.
+  Point at(double arc_length) const;
+
  private:
   std::vector<Point> points_;
   std::vector<double> arc_lengths_;
