@@ -64,14 +64,15 @@ HEAD
 ## What this shows
 
 - The chi-squared gate, which the heat method uses only to weight the loops, ranks
-  the loops better (AUC) than any heat distance does, and without a spectrum. It is
-  the baseline that every table must show.
+  them as well as any of these or better, and needs no spectrum. It is the baseline
+  that every table must show.
 - The paper gives konst as "0 to 4, depending on the scale" and no more. With one
   value for all scales, every round prunes again what lies above the threshold of
   what is left, so that precision falls; the adaptive thresholds stop where the
   distances no longer fall into two groups.
-- Uniform weights, that is topology alone, say little about these loops: false
-  loops of a place-recognition front end come in clusters that support each other.
+- Uniform weights, that is topology alone, tell next to nothing about these loops
+  (no split, or a wrong one): what the heat method finds here, it finds through the
+  chi-squared weights.
 TAIL
 } >"$work/page.md"
 mkdir -p docs/results
