@@ -47,7 +47,8 @@ int run(int argc, char** argv) {
   root.formatter(std::make_shared<HelpFormatter>());
 
   const std::vector<Verb> verbs = {add_info(root),  add_simulate(root), add_corrupt(root),
-                                   add_prune(root), add_label(root),    add_eval(root)};
+                                   add_prune(root), add_optimize(root), add_label(root),
+                                   add_eval(root)};
   try {
     root.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -9,8 +9,11 @@ Verb add_info(CLI::App& root);
 Verb add_simulate(CLI::App& root);
 Verb add_corrupt(CLI::App& root);
 Verb add_prune(CLI::App& root);
+Verb add_optimize(CLI::App& root);
 Verb add_label(CLI::App& root);
 Verb add_eval(CLI::App& root);
 Verb add_eval_loops(CLI::App& eval);
+Verb add_eval_ate(CLI::App& eval);
+Verb add_eval_rpe(CLI::App& eval);
 
 }  // namespace isotherm::apps

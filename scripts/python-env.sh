@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# Makes .venv, the Python environment of the tests and benchmarks that compare
+# with other programs, and prints its interpreter. Does nothing if it is up to date.
+# usage: scripts/python-env.sh
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+wanted=tests/interop/requirements.txt
+stamp=.venv/installed.txt
+if ! cmp -s "$wanted" "$stamp"; then
+  python3 -m venv .venv >&2
+  .venv/bin/pip install --quiet --disable-pip-version-check -r "$wanted" >&2
+  cp "$wanted" "$stamp"
+fi
+echo "$PWD/.venv/bin/python"
