@@ -38,9 +38,13 @@ ResistanceResult effective_resistances(const WeightedGraph& graph,
     }
   }
   const auto structure = detail::analyse(detail::with_pairs(grounded.lower, rows));
-  const auto quality = detail::selected_differences<double>(
-      structure, detail::locate(structure, rows), 1.0, 0.0, result.values);
+  std::vector<detail::SelectedEntries<double>> entries(pairs.size());
+  const auto quality = detail::selected_entries<double>(structure, detail::locate(structure, rows),
+                                                        1.0, 0.0, entries);
   if (!quality.finite) throw NumericalError("resistance", "the factorisation broke down");
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (result.values[k] == 0.0) result.values[k] = entries[k].difference();
+  }
   result.residual = quality.residual;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -8,7 +8,7 @@
 namespace isotherm::spectral::detail {
 namespace {
 
-constexpr double kSquaredNorm = 2.0;  // of e_i - e_j
+constexpr double kLargestNorm = 2.0;  // squared, of a target's vector
 
 /// What rounding in the Lanczos process may have done: a displacement of the
 /// spectrum by a few units in the last place of the norm.
@@ -20,7 +20,7 @@ double lanczos_rounding(int steps, double scale, double norm) {
 /// The table's approximation that takes no more than a hundredth of the tolerance.
 const RationalExponential& approximation_for(double tolerance) {
   for (const auto& rational : kRationalExponentials) {
-    if (4.0 * kSquaredNorm * rational.error <= 0.01 * tolerance) return rational;
+    if (4.0 * kLargestNorm * rational.error <= 0.01 * tolerance) return rational;
   }
   return kRationalExponentials.back();
 }
@@ -40,14 +40,16 @@ bool HeatGoal::reached(const CertifiedValue& value, std::size_t scale) const {
 HeatBracketer::HeatBracketer(const SparseMatrix& laplacian, double tolerance)
     : lanczos_(laplacian), exponential_(approximation_for(tolerance)) {}
 
-int HeatBracketer::run(VertexPair pair, const HeatGoal& goal, std::span<CertifiedValue> values) {
-  std::fill(values.begin(), values.end(), CertifiedValue{1.0, 0.0, kSquaredNorm});
+int HeatBracketer::run(const HeatTarget& target, const HeatGoal& goal,
+                       std::span<CertifiedValue> values) {
+  squared_norm_ = target.squared_norm();
+  std::fill(values.begin(), values.end(), CertifiedValue{0.5 * squared_norm_, 0.0, squared_norm_});
   order_.resize(values.size());
   std::iota(order_.begin(), order_.end(), 0);
   std::stable_sort(order_.begin(), order_.end(), [&goal](std::size_t a, std::size_t b) {
     return goal.scales[a] > goal.scales[b];
   });
-  lanczos_.start(pair.from, pair.to);
+  lanczos_.start(target);
   radau_diagonal_.clear();
   rule_work_ = 0;
   work_at_.assign(values.size(), 0);
@@ -93,20 +95,20 @@ bool HeatBracketer::settled_all(const HeatGoal& goal, std::span<CertifiedValue> 
 /// What evaluating a rule, and rounding before it, may have cost.
 double HeatBracketer::allowance(double scale) const {
   const double norm = lanczos_.norm_bound();
-  return kSquaredNorm *
+  return squared_norm_ *
          (exponential_.error_bound(scale, norm) + lanczos_rounding(lanczos_.steps(), scale, norm));
 }
 
 /// Intersects a bracket with the one of the current rules.
 void HeatBracketer::tighten(double scale, CertifiedValue& bracket) {
   const std::span off_diagonal(lanczos_.off_diagonal());
-  const double below = kSquaredNorm * exponential_(lanczos_.diagonal(), off_diagonal, scale);
+  const double below = squared_norm_ * exponential_(lanczos_.diagonal(), off_diagonal, scale);
   rule_work_ += kRuleCost * lanczos_.steps();
   bracket.lower = std::max(bracket.lower, below - allowance(scale));
   if (lanczos_.exhausted()) {
     bracket.upper = std::min(bracket.upper, below + allowance(scale));
   } else if (!radau_diagonal_.empty()) {
-    const double above = kSquaredNorm * exponential_(radau_diagonal_, off_diagonal, scale);
+    const double above = squared_norm_ * exponential_(radau_diagonal_, off_diagonal, scale);
     rule_work_ += kRuleCost * lanczos_.steps();
     bracket.upper = std::min(bracket.upper, above + allowance(scale));
   }

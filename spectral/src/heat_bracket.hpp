@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "heat_target.hpp"
 #include "isotherm/spectral/heat_distance.hpp"
 #include "local_lanczos.hpp"
 #include "tridiagonal_exponential.hpp"
@@ -25,7 +26,7 @@ struct HeatGoal {
   bool reached(const CertifiedValue& value, std::size_t scale) const;
 };
 
-/// Brackets D_e(t) of one pair at every scale of a goal from one Lanczos run,
+/// Brackets a quadratic form of exp(-tL) at every scale of a goal from one Lanczos run,
 /// by the Gauss rule from below and the Gauss-Radau rule with a node at 0 from
 /// above (exp(-t lambda) is completely monotone: Golub and Meurant 2010, ch. 6).
 class HeatBracketer {
@@ -35,8 +36,8 @@ class HeatBracketer {
   HeatBracketer(const SparseMatrix& laplacian, double tolerance);
 
   /// Fills `values`, one entry a scale, and returns the number of steps taken.
-  /// @pre from != to.
-  int run(VertexPair pair, const HeatGoal& goal, std::span<CertifiedValue> values);
+  /// @pre the target is not trivial.
+  int run(const HeatTarget& target, const HeatGoal& goal, std::span<CertifiedValue> values);
 
   /// Effort of the last run until `scale` was bracketed well enough (or until
   /// the end), in units of a matrix entry multiplied.
@@ -50,6 +51,7 @@ class HeatBracketer {
 
   LocalLanczos lanczos_;
   TridiagonalExponential exponential_;
+  double squared_norm_ = 0.0;           // of the target's vector
   std::vector<std::size_t> order_;      // scales, largest first
   std::vector<double> radau_diagonal_;  // of the latest rule with a node at 0, if any
   std::int64_t rule_work_ = 0;

@@ -2,90 +2,57 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <optional>
+#include <limits>
 #include <utility>
 
-#include "heat_bracket.hpp"
-#include "heat_plan.hpp"
+#include "heat_engine.hpp"
 #include "isotherm/spectral/laplacian.hpp"
 #include "pair_pattern.hpp"
-#include "parallel.hpp"
-#include "rational_heat.hpp"
 
 namespace isotherm::spectral {
 namespace {
 
-void check_scales(std::span<const double> scales) {
-  for (std::size_t k = 0; k < scales.size(); ++k) {
-    if (std::isfinite(scales[k]) && scales[k] >= 0.0) continue;
-    throw InvalidArgument("scales[" + std::to_string(k) + "]", "must be finite and not negative");
-  }
+using detail::HeatTarget;
+
+std::vector<HeatTarget> targets_of(std::span<const VertexPair> pairs) {
+  std::vector<HeatTarget> targets;
+  targets.reserve(pairs.size());
+  for (const auto& pair : pairs) targets.push_back({pair.from, pair.to});
+  return targets;
 }
 
-constexpr CertifiedValue kZero = {0.0, 0.0, 0.0};
-constexpr CertifiedValue kUnknown = {1.0, 0.0, 2.0};  // nothing but what holds for every graph
-constexpr double kAnalysisEntry = 300.0;  // nanoseconds an entry for ordering and analysis
-
-/// What the rational method needs, made when first asked for.
-class RationalEngine {
- public:
-  RationalEngine(const SparseMatrix& laplacian, std::span<const VertexPair> pairs, double tolerance)
-      : laplacian_(laplacian),
-        pairs_(pairs.begin(), pairs.end()),
-        approximation_(detail::rational_exponential_for(tolerance)) {
-    for (auto& pair : pairs_) {
-      if (pair.from == pair.to) pair = {-1, -1};
-    }
-  }
-
-  const detail::RationalExponential& approximation() const { return approximation_; }
-
-  const detail::SupernodalStructure& structure() {
-    if (!structure_) {
-      const SparseMatrix lower = laplacian_.triangularView<Eigen::Lower>();
-      structure_ = detail::analyse(detail::with_pairs(lower, pairs_));
-    }
-    return *structure_;
-  }
-
-  detail::FrontQueries queries() { return detail::locate(structure(), pairs_); }
-
- private:
-  const SparseMatrix& laplacian_;
-  std::vector<VertexPair> pairs_;
-  const detail::RationalExponential& approximation_;
-  std::optional<detail::SupernodalStructure> structure_;
-};
-
-bool all_of(const std::vector<bool>& flags) {
-  return std::find(flags.begin(), flags.end(), false) == flags.end();
-}
-
-bool any_open(const HeatDistanceResult& result, const detail::HeatGoal& goal, std::size_t scale) {
-  for (std::size_t k = 0; k < result.pairs.size(); ++k) {
-    if (!goal.reached(result.at(k, scale), scale)) return true;
-  }
-  return false;
-}
-
-/// What both brackets allow. Both hold, so they meet; should rounding have been
-/// worse than allowed for, the proven one stands.
-CertifiedValue intersection(const CertifiedValue& proven, const CertifiedValue& other) {
-  CertifiedValue both;
-  both.lower = std::max(proven.lower, other.lower);
-  both.upper = std::min(proven.upper, other.upper);
-  if (both.lower > both.upper) return proven;
-  both.value = std::clamp(other.value, both.lower, both.upper);
-  return both;
-}
-
-void summarise(HeatDistanceResult& result, const detail::HeatGoal& goal) {
+void summarise(HeatDistanceResult& result, double tolerance) {
+  const detail::HeatGoal goal{result.scales, tolerance, result.thresholds};
+  result.unconverged = 0;
+  result.widest = 0.0;
   for (std::size_t k = 0; k < result.values.size(); ++k) {
     const auto& value = result.values[k];
     result.widest = std::max(result.widest, value.width());
     if (!goal.reached(value, k % result.scales.size())) ++result.unconverged;
   }
+}
+
+constexpr Index kUnreachable = std::numeric_limits<Index>::max();
+
+/// Number of edges to the nearest of `sources`.
+std::vector<Index> hops_from(const SparseMatrix& laplacian, const std::vector<Index>& sources) {
+  std::vector<Index> hops(laplacian.rows(), kUnreachable);
+  std::vector<Index> queue;
+  for (const Index vertex : sources) {
+    if (hops[vertex] == 0) continue;
+    hops[vertex] = 0;
+    queue.push_back(vertex);
+  }
+  for (std::size_t head = 0; head < queue.size(); ++head) {
+    const Index vertex = queue[head];
+    for (SparseMatrix::InnerIterator entry(laplacian, vertex); entry; ++entry) {
+      const auto neighbour = static_cast<Index>(entry.row());
+      if (hops[neighbour] != kUnreachable) continue;
+      hops[neighbour] = hops[vertex] + 1;
+      queue.push_back(neighbour);
+    }
+  }
+  return hops;
 }
 
 }  // namespace
@@ -111,85 +78,39 @@ std::vector<double> HeatDistanceResult::column(std::size_t scale) const {
 }
 
 struct HeatDistance::Impl {
-  SparseMatrix laplacian;
+  WeightedGraph graph;
+  std::vector<bool> present;  // per edge of the graph
+  SparseMatrix laplacian;     // of the edges that are present
   HeatDistanceOptions options;
 
-  detail::HeatPlan choose(const HeatDistanceResult& result, const detail::HeatGoal& goal,
-                          RationalEngine& engine) const;
-  void run_lanczos(HeatDistanceResult& result, const detail::HeatGoal& goal) const;
-  void run_rational(HeatDistanceResult& result, const detail::HeatGoal& goal,
-                    std::span<const std::size_t> scales, RationalEngine& engine) const;
+  std::vector<std::size_t> touched_pairs(const HeatDistanceResult& result,
+                                         const std::vector<Index>& ends) const;
 };
 
-detail::HeatPlan HeatDistance::Impl::choose(const HeatDistanceResult& result,
-                                            const detail::HeatGoal& goal,
-                                            RationalEngine& engine) const {
+/// The pairs whose evaluation looked at a vertex of `ends`: within m - 1 hops
+/// for a run of m Lanczos steps, anywhere in its component for other methods.
+std::vector<std::size_t> HeatDistance::Impl::touched_pairs(const HeatDistanceResult& result,
+                                                           const std::vector<Index>& ends) const {
+  const auto hops = hops_from(laplacian, ends);
   const auto scale_count = result.scales.size();
-  if (options.method != HeatMethod::automatic) {
-    return {std::vector<bool>(scale_count, options.method == HeatMethod::rational),
-            std::vector<std::string>(scale_count, "asked for")};
+  std::vector<std::size_t> touched;
+  for (std::size_t k = 0; k < result.pairs.size(); ++k) {
+    const auto [from, to] = result.pairs[k];
+    const auto begin = result.methods.begin() + static_cast<std::ptrdiff_t>(k * scale_count);
+    const auto end = begin + static_cast<std::ptrdiff_t>(scale_count);
+    const bool local = std::find(begin, end, HeatMethod::rational) == end;
+    const Index nearest = std::min(hops[from], hops[to]);
+    const Index reach = local ? result.steps[k] - 1 : kUnreachable - 1;
+    if (from != to && nearest <= reach) touched.push_back(k);
   }
-  // Without a factorisation to compare with, a run is worth this much before
-  // it is worth analysing the matrix.
-  const auto pair_count = static_cast<double>(result.pairs.size());
-  const double setup = kAnalysisEntry * static_cast<double>(laplacian.nonZeros());
-  detail::HeatBracketer pilot(laplacian, options.tolerance);
-  auto costs = detail::lanczos_costs(pilot, result.pairs, goal, setup / pair_count);
-  if (pair_count * *std::max_element(costs.begin(), costs.end()) <= setup) {
-    return {std::vector<bool>(scale_count, false),
-            std::vector<std::string>(
-                scale_count, "local Lanczos: cheaper than analysing the matrix for the other")};
-  }
-  const double rational = detail::rational_cost(engine.structure(), engine.approximation());
-  const double everything = setup + static_cast<double>(scale_count) * rational;
-  costs = detail::lanczos_costs(pilot, result.pairs, goal, 2.0 * everything / pair_count);
-  return detail::plan(result.scales, costs, result.pairs.size(), rational, 0.0);
-}
-
-void HeatDistance::Impl::run_lanczos(HeatDistanceResult& result,
-                                     const detail::HeatGoal& goal) const {
-  constexpr std::size_t kGrain = 8;
-  const auto scale_count = result.scales.size();
-  const std::span values(result.values);
-  detail::parallel_for(
-      static_cast<std::int64_t>(result.pairs.size()), kGrain, options.threads, options.progress,
-      "heat distances", [this] { return detail::HeatBracketer(laplacian, options.tolerance); },
-      [&](detail::HeatBracketer& bracketer, std::int64_t k) {
-        const auto row = static_cast<std::size_t>(k);
-        const auto pair = result.pairs[row];
-        if (pair.from == pair.to) return;
-        result.steps[row] =
-            bracketer.run(pair, goal, values.subspan(row * scale_count, scale_count));
-      });
-}
-
-/// Brings every pair that `goal` does not accept yet at the given scales there,
-/// narrowing the brackets that Lanczos left.
-void HeatDistance::Impl::run_rational(HeatDistanceResult& result, const detail::HeatGoal& goal,
-                                      std::span<const std::size_t> scales,
-                                      RationalEngine& engine) const {
-  if (scales.empty()) return;
-  const auto pair_count = result.pairs.size();
-  const auto scale_count = result.scales.size();
-  std::vector<double> times;
-  for (const std::size_t s : scales) times.push_back(result.scales[s]);
-  std::vector<CertifiedValue> values(pair_count * scales.size());
-  detail::rational_heat_distances(engine.structure(), engine.queries(), engine.approximation(),
-                                  times, options.threads, options.progress, values);
-  for (std::size_t k = 0; k < pair_count; ++k) {
-    if (result.pairs[k].from == result.pairs[k].to) continue;
-    for (std::size_t s = 0; s < scales.size(); ++s) {
-      const std::size_t index = k * scale_count + scales[s];
-      if (goal.reached(result.values[index], scales[s])) continue;
-      result.values[index] = intersection(result.values[index], values[s * pair_count + k]);
-      result.methods[index] = HeatMethod::rational;
-    }
-  }
+  return touched;
 }
 
 HeatDistance::HeatDistance(const WeightedGraph& graph, HeatDistanceOptions options)
     : impl_(std::make_unique<Impl>()) {
   options.validate();
+  impl_->graph = graph;
+  impl_->present.assign(graph.edges().size(), true);
   impl_->laplacian = Laplacian(graph).matrix();
   impl_->options = std::move(options);
 }
@@ -208,43 +129,58 @@ HeatDistanceResult HeatDistance::evaluate(std::span<const VertexPair> pairs,
                                           std::span<const double> thresholds) const {
   const auto start = std::chrono::steady_clock::now();
   detail::check_pairs(pairs, static_cast<Index>(impl_->laplacian.rows()));
-  check_scales(scales);
+  detail::check_scales(scales);
   if (!thresholds.empty() && thresholds.size() != scales.size()) {
     throw InvalidArgument("thresholds", "must have one entry per scale");
   }
   HeatDistanceResult result;
   result.pairs.assign(pairs.begin(), pairs.end());
   result.scales.assign(scales.begin(), scales.end());
-  result.steps.assign(pairs.size(), 0);
-  result.reasons.assign(scales.size(), "no pairs");
-  for (const auto& pair : pairs) {
-    const bool trivial = pair.from == pair.to;
-    result.values.insert(result.values.end(), scales.size(), trivial ? kZero : kUnknown);
-    result.methods.insert(result.methods.end(), scales.size(),
-                          trivial ? HeatMethod::exact : HeatMethod::lanczos);
-  }
-  if (result.values.empty()) return result;
-
-  detail::HeatGoal goal{result.scales, impl_->options.tolerance, thresholds,
-                        impl_->options.max_steps};
-  RationalEngine engine(impl_->laplacian, result.pairs, impl_->options.tolerance);
-  const auto plan = impl_->choose(result, goal, engine);
-  result.reasons = plan.reasons;
-  goal.optional = plan.rational;
-  if (!all_of(plan.rational)) impl_->run_lanczos(result, goal);
-
-  std::vector<std::size_t> rational_scales;
-  for (std::size_t s = 0; s < scales.size(); ++s) {
-    const bool failed = impl_->options.method == HeatMethod::automatic && any_open(result, goal, s);
-    if (plan.rational[s] || failed) rational_scales.push_back(s);
-    if (failed && !plan.rational[s]) {
-      result.reasons[s] += "; pairs that it did not bracket in max_steps went to rational";
-    }
-  }
-  impl_->run_rational(result, goal, rational_scales, engine);
-  summarise(result, goal);
+  result.thresholds.assign(thresholds.begin(), thresholds.end());
+  const detail::HeatEngine engine(impl_->laplacian, impl_->options);
+  auto table = engine.evaluate(targets_of(pairs), scales, thresholds);
+  result.values = std::move(table.values);
+  result.methods = std::move(table.methods);
+  result.steps = std::move(table.steps);
+  result.reasons = std::move(table.plan.reasons);
+  result.by_rational = std::move(table.plan.rational);
+  summarise(result, impl_->options.tolerance);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
+}
+
+std::int64_t HeatDistance::remove_edges(std::span<const Index> edges, HeatDistanceResult& result) {
+  const auto start = std::chrono::steady_clock::now();
+  const Index edge_count = impl_->graph.edge_count();
+  for (const Index edge : edges) {
+    if (edge < 0 || edge >= edge_count) throw InvalidArgument("edges", "no such edge");
+  }
+  std::vector<Index> ends;
+  for (const Index edge : edges) {
+    if (!impl_->present[edge]) continue;
+    impl_->present[edge] = false;
+    ends.push_back(impl_->graph.edge(edge).from);
+    ends.push_back(impl_->graph.edge(edge).to);
+  }
+  const auto touched = impl_->touched_pairs(result, ends);
+  impl_->laplacian = Laplacian(filter_edges(impl_->graph, impl_->present)).matrix();
+
+  std::vector<VertexPair> pairs;
+  for (const std::size_t k : touched) pairs.push_back(result.pairs[k]);
+  const detail::HeatEngine engine(impl_->laplacian, impl_->options);
+  const auto table = engine.evaluate(targets_of(pairs), result.scales, result.thresholds,
+                                     detail::HeatPlan{result.by_rational, result.reasons});
+  const auto scale_count = static_cast<std::ptrdiff_t>(result.scales.size());
+  for (std::size_t k = 0; k < touched.size(); ++k) {
+    const auto source = static_cast<std::ptrdiff_t>(k) * scale_count;
+    const auto target = static_cast<std::ptrdiff_t>(touched[k]) * scale_count;
+    std::copy_n(table.values.begin() + source, scale_count, result.values.begin() + target);
+    std::copy_n(table.methods.begin() + source, scale_count, result.methods.begin() + target);
+    result.steps[touched[k]] = table.steps[k];
+  }
+  summarise(result, impl_->options.tolerance);
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return static_cast<std::int64_t>(touched.size());
 }
 
 HeatDistanceResult heat_distances(const WeightedGraph& graph, std::span<const VertexPair> pairs,

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLanczosEntry = 1.3;  // nanoseconds a matrix entry, measured
-constexpr std::size_t kPilotPairs = 16;
+constexpr std::size_t kPilotTargets = 16;
 
 std::string seconds_text(double nanoseconds) {
   if (nanoseconds == kInfinity) return "more than that";
@@ -21,18 +21,18 @@ std::string seconds_text(double nanoseconds) {
 
 }  // namespace
 
-std::vector<double> lanczos_costs(HeatBracketer& bracketer, std::span<const VertexPair> pairs,
+std::vector<double> lanczos_costs(HeatBracketer& bracketer, std::span<const HeatTarget> targets,
                                   const HeatGoal& goal, double budget) {
   std::vector<double> costs(goal.scales.size(), 0.0);
   std::vector<CertifiedValue> values(goal.scales.size());
   HeatGoal pilot = goal;
   pilot.watch_every_scale = true;
   pilot.max_work = static_cast<std::int64_t>(std::min(1e15, budget / kLanczosEntry));
-  const std::size_t stride = std::max<std::size_t>(1, pairs.size() / kPilotPairs);
+  const std::size_t stride = std::max<std::size_t>(1, targets.size() / kPilotTargets);
   std::size_t sampled = 0;
-  for (std::size_t k = stride / 2; k < pairs.size(); k += stride) {
-    if (pairs[k].from == pairs[k].to) continue;
-    bracketer.run(pairs[k], pilot, values);
+  for (std::size_t k = stride / 2; k < targets.size(); k += stride) {
+    if (targets[k].trivial()) continue;
+    bracketer.run(targets[k], pilot, values);
     ++sampled;
     for (std::size_t s = 0; s < costs.size(); ++s) {
       const bool reached = goal.reached(values[s], s);
@@ -44,18 +44,18 @@ std::vector<double> lanczos_costs(HeatBracketer& bracketer, std::span<const Vert
 }
 
 HeatPlan plan(std::span<const double> scales, std::span<const double> lanczos,
-              std::size_t pair_count, double rational, double setup) {
+              std::size_t target_count, double rational, double setup) {
   std::vector<std::size_t> order(scales.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return scales[a] < scales[b]; });
 
-  const auto pairs = static_cast<double>(pair_count);
+  const auto targets = static_cast<double>(target_count);
   double best = kInfinity;
   std::size_t split = 0;  // scales before it in `order` go to Lanczos
   double run = 0.0;       // cost of the Lanczos run that reaches them
   for (std::size_t count = 0; count <= order.size(); ++count) {
-    if (count > 0) run = std::max(run, pairs * lanczos[order[count - 1]]);
+    if (count > 0) run = std::max(run, targets * lanczos[order[count - 1]]);
     const auto rest = static_cast<double>(order.size() - count);
     const double cost = run + (rest > 0 ? setup + rest * rational : 0.0);
     if (cost < best) {
@@ -69,10 +69,10 @@ HeatPlan plan(std::span<const double> scales, std::span<const double> lanczos,
     const bool by_rational = k >= split;
     result.rational[order[k]] = by_rational;
     result.reasons[order[k]] =
-        by_rational ? "rational: estimated " + seconds_text(rational) +
-                          " for all pairs, local Lanczos " + seconds_text(pairs * lanczos[order[k]])
-                    : "local Lanczos: estimated " + seconds_text(pairs * lanczos[order[k]]) +
-                          " for all pairs, rational " + seconds_text(setup + rational);
+        by_rational ? "rational: estimated " + seconds_text(rational) + " in all, local Lanczos " +
+                          seconds_text(targets * lanczos[order[k]])
+                    : "local Lanczos: estimated " + seconds_text(targets * lanczos[order[k]]) +
+                          " in all, rational " + seconds_text(setup + rational);
   }
   return result;
 }

@@ -16,19 +16,19 @@ struct HeatPlan {
   std::vector<std::string> reasons;  ///< per scale
 };
 
-/// Mean time of local Lanczos a pair until each scale is bracketed, in
-/// nanoseconds, from a few pairs spread over the list. Scales not reached
-/// within `budget` nanoseconds a pair are infinitely expensive.
-std::vector<double> lanczos_costs(HeatBracketer& bracketer, std::span<const VertexPair> pairs,
+/// Mean time of local Lanczos a target until each scale is bracketed, in
+/// nanoseconds, from a few targets spread over the list. Scales not reached
+/// within `budget` nanoseconds a target are infinitely expensive.
+std::vector<double> lanczos_costs(HeatBracketer& bracketer, std::span<const HeatTarget> targets,
                                   const HeatGoal& goal, double budget);
 
 /// Splits the scales so that the sum of both methods' costs is least. One
 /// Lanczos run serves every scale below its largest, so the rational ones are
 /// the largest scales.
-/// @param lanczos mean cost a pair until each scale is reached
-/// @param rational cost of one scale for all pairs
+/// @param lanczos mean cost a target until each scale is reached
+/// @param rational cost of one scale in all
 /// @param setup cost of the first rational scale on top
 HeatPlan plan(std::span<const double> scales, std::span<const double> lanczos,
-              std::size_t pair_count, double rational, double setup);
+              std::size_t target_count, double rational, double setup);
 
 }  // namespace isotherm::spectral::detail

@@ -18,7 +18,7 @@ constexpr double kBreakdown = 4.0 * std::numeric_limits<double>::epsilon();
 LocalLanczos::LocalLanczos(const SparseMatrix& laplacian)
     : laplacian_(&laplacian), local_of_(laplacian.rows(), kUndiscovered) {}
 
-void LocalLanczos::start(Index from, Index to) {
+void LocalLanczos::start(const HeatTarget& target) {
   for (const Index vertex : ball_) local_of_[vertex] = kUndiscovered;
   ball_.clear();
   row_start_.assign(1, 0);
@@ -34,17 +34,28 @@ void LocalLanczos::start(Index from, Index to) {
   work_ = 0;
   exhausted_ = false;
 
-  discover(from);
-  discover(to);
-  const double root_half = std::sqrt(0.5);
-  current_ = {root_half, -root_half};
+  excluded_ = target.excluded;
+  discover(target.from);
+  current_ = {1.0};
+  if (!target.single()) {
+    discover(target.to);
+    const double root_half = std::sqrt(0.5);
+    current_ = {root_half, -root_half};
+  }
   inner_ = 0;
-  support_ = 2;
+  support_ = static_cast<Index>(ball_.size());
 }
 
 void LocalLanczos::discover(Index vertex) {
   local_of_[vertex] = static_cast<Index>(ball_.size());
   ball_.push_back(vertex);
+}
+
+/// The weight between two vertices without the excluded edge.
+double LocalLanczos::weight_left(Index vertex, Index neighbour, double weight) const {
+  const bool forward = vertex == excluded_.from && neighbour == excluded_.to;
+  const bool backward = vertex == excluded_.to && neighbour == excluded_.from;
+  return forward || backward ? excluded_.remaining : weight;
 }
 
 /// Stores the rows of the vertices that came into the support last, and
@@ -61,10 +72,13 @@ void LocalLanczos::expand_frontier() {
         degree = values[k];
         continue;
       }
+      const double weight = weight_left(vertex, rows[k], -values[k]);
+      if (weight == 0.0) continue;
       if (local_of_[rows[k]] == kUndiscovered) discover(rows[k]);
       columns_.push_back(local_of_[rows[k]]);
-      weights_.push_back(-values[k]);
+      weights_.push_back(weight);
     }
+    if (vertex == excluded_.from || vertex == excluded_.to) degree -= excluded_.weight;
     degrees_.push_back(degree);
     row_start_.push_back(static_cast<Index>(columns_.size()));
     norm_bound_ = std::max(norm_bound_, 2.0 * degree);

@@ -1,14 +1,17 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
+#include "heat_target.hpp"
 #include "isotherm/spectral/types.hpp"
 
 namespace isotherm::spectral::detail {
 
-/// The Lanczos process of a Laplacian started at e_i - e_j, on the touched
-/// ball only: after m steps the vectors live on the vertices within m hops of
-/// {i, j}, so that a step costs the edges of that ball and not of the graph.
+/// The Lanczos process of a Laplacian started at e_i - e_j (or e_i), on the
+/// touched ball only: after m steps the vectors live on the vertices within m
+/// hops of {i, j}, so that a step costs the edges of that ball and not of the
+/// graph.
 ///
 /// Without reorthogonalisation: what is read off is the tridiagonal matrix,
 /// and the quadrature rules of a finite-precision Lanczos matrix stay accurate
@@ -20,8 +23,8 @@ class LocalLanczos {
   /// `laplacian` is symmetric, with both triangles stored, and outlives this.
   explicit LocalLanczos(const SparseMatrix& laplacian);
 
-  /// Begins anew at e_from - e_to, from != to.
-  void start(Index from, Index to);
+  /// Begins anew at the vector of a target, which is not trivial.
+  void start(const HeatTarget& target);
 
   /// One step: appends to diagonal() and off_diagonal().
   void step();
@@ -45,8 +48,10 @@ class LocalLanczos {
  private:
   void discover(Index vertex);
   void expand_frontier();
+  double weight_left(Index vertex, Index neighbour, double weight) const;
 
   const SparseMatrix* laplacian_;
+  ExcludedEdge excluded_;
   std::vector<Index> local_of_;  // graph vertex -> position in ball_, or -1
 
   std::vector<Index> ball_;       // discovered vertices, nearest first

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -78,11 +79,12 @@ class SelectedInverse {
     updates_.shrink_to_fit();
   }
 
-  SelectedInverseQuality invert(const FrontQueries& queries, std::span<Scalar> values) {
+  SelectedInverseQuality invert(const FrontQueries& queries,
+                                std::span<SelectedEntries<Scalar>> entries) {
     row_sums_.assign(structure_.size, Scalar(0.0));
     for (Index s = structure_.supernode_count() - 1; s >= 0; --s) {
       const Scalar* inverse = invert_front(s);
-      answer(s, inverse, queries, values);
+      answer(s, inverse, queries, entries);
       check(s, inverse);
     }
     SelectedInverseQuality quality;
@@ -286,17 +288,18 @@ class SelectedInverse {
   }
 
   void answer(Index s, const Scalar* inverse, const FrontQueries& queries,
-              std::span<Scalar> values) const {
+              std::span<SelectedEntries<Scalar>> entries) const {
     const auto order = static_cast<std::size_t>(structure_.front_size(s));
     for (Index q = queries.start[s]; q < queries.start[s + 1]; ++q) {
       const auto& query = queries.queries[q];
+      auto& answer = entries[query.pair];
       const auto first = static_cast<std::size_t>(query.first);
-      Scalar value = inverse[first * order + first];
-      if (query.second >= 0) {
-        const auto second = static_cast<std::size_t>(query.second);
-        value += inverse[second * order + second] - 2.0 * inverse[first * order + second];
-      }
-      values[query.pair] = value;
+      answer.first = inverse[first * order + first];
+      if (query.second < 0) continue;
+      const auto second = static_cast<std::size_t>(query.second);
+      answer.second = inverse[second * order + second];
+      answer.cross = inverse[first * order + second];
+      if (query.swapped) std::swap(answer.first, answer.second);
     }
   }
 
@@ -339,20 +342,20 @@ class SelectedInverse {
 }  // namespace
 
 template <class Scalar>
-SelectedInverseQuality selected_differences(const SupernodalStructure& structure,
-                                            const FrontQueries& queries, double scale, Scalar shift,
-                                            std::span<Scalar> values) {
+SelectedInverseQuality selected_entries(const SupernodalStructure& structure,
+                                        const FrontQueries& queries, double scale, Scalar shift,
+                                        std::span<SelectedEntries<Scalar>> entries) {
   if (structure.size == 0) return {};
   SelectedInverse<Scalar> inverse(structure, scale, shift);
   inverse.factorise();
-  return inverse.invert(queries, values);
+  return inverse.invert(queries, entries);
 }
 
-template SelectedInverseQuality selected_differences<double>(const SupernodalStructure&,
-                                                             const FrontQueries&, double, double,
-                                                             std::span<double>);
-template SelectedInverseQuality selected_differences<std::complex<double>>(
+template SelectedInverseQuality selected_entries<double>(const SupernodalStructure&,
+                                                         const FrontQueries&, double, double,
+                                                         std::span<SelectedEntries<double>>);
+template SelectedInverseQuality selected_entries<std::complex<double>>(
     const SupernodalStructure&, const FrontQueries&, double, std::complex<double>,
-    std::span<std::complex<double>>);
+    std::span<SelectedEntries<std::complex<double>>>);
 
 }  // namespace isotherm::spectral::detail

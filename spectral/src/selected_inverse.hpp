@@ -15,9 +15,20 @@ struct SelectedInverseQuality {
   bool finite = true;
 };
 
-/// For every query pair (i, j) the value Z_ii + Z_jj - 2 Z_ij, or Z_ii for a
-/// single row, of Z = (scale * M + shift * I)^-1, M being the matrix that was
-/// analysed: `values[query.pair]` is written.
+/// The entries Z_ii, Z_jj and Z_ij of an inverse that belong to a pair (i, j);
+/// the last two are 0 for a single row.
+template <class Scalar>
+struct SelectedEntries {
+  Scalar first{};
+  Scalar second{};
+  Scalar cross{};
+
+  /// (e_i - e_j)' Z (e_i - e_j), or Z_ii.
+  Scalar difference() const { return first + second - 2.0 * cross; }
+};
+
+/// For every query the entries of Z = (scale * M + shift * I)^-1, M being the
+/// matrix that was analysed: `entries[query.pair]` is written.
 ///
 /// A multifrontal LDL' factorisation without pivoting, then Takahashi's
 /// recurrence from the root down (Takahashi, Fagan and Chin 1973; Erisman and
@@ -27,8 +38,8 @@ struct SelectedInverseQuality {
 /// imaginary part, which bounds every pivot from below. Scalar is double or
 /// std::complex<double>.
 template <class Scalar>
-SelectedInverseQuality selected_differences(const SupernodalStructure& structure,
-                                            const FrontQueries& queries, double scale, Scalar shift,
-                                            std::span<Scalar> values);
+SelectedInverseQuality selected_entries(const SupernodalStructure& structure,
+                                        const FrontQueries& queries, double scale, Scalar shift,
+                                        std::span<SelectedEntries<Scalar>> entries);
 
 }  // namespace isotherm::spectral::detail

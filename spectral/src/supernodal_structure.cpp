@@ -136,12 +136,13 @@ FrontQueries locate(const SupernodalStructure& structure, std::span<const Vertex
     if (low < 0) continue;
     low = structure.position_of[low];
     if (high >= 0) high = structure.position_of[high];
-    if (high >= 0 && high < low) std::swap(low, high);
+    const bool swapped = high >= 0 && high < low;
+    if (swapped) std::swap(low, high);
     const auto above =
         std::upper_bound(structure.first_column.begin(), structure.first_column.end(), low);
     const auto s = static_cast<Index>(above - structure.first_column.begin()) - 1;
     const Index second = high < 0 ? kNone : front_place(s, high);
-    located.push_back({s, {static_cast<Index>(k), front_place(s, low), second}});
+    located.push_back({s, {static_cast<Index>(k), front_place(s, low), second, swapped}});
   }
 
   FrontQueries result;

@@ -48,9 +48,10 @@ SupernodalStructure analyse(const SparseMatrix& lower);
 
 /// Where the fronts hold what a pair of rows asks for.
 struct FrontQuery {
-  Index pair = 0;    ///< position in the list of pairs
-  Index first = 0;   ///< row of the front
-  Index second = 0;  ///< another one, or -1 for a single diagonal entry
+  Index pair = 0;        ///< position in the list of pairs
+  Index first = 0;       ///< row of the front
+  Index second = 0;      ///< another one, or -1 for a single diagonal entry
+  bool swapped = false;  ///< `first` belongs to the second row of the pair
 };
 
 /// The queries of each supernode: those of s are

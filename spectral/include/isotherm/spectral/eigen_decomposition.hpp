@@ -50,11 +50,11 @@ template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, EigenOptions>
 void visit_fields(Options& options, Visitor&& visitor) {
   visitor("count", options.count, "number of smallest eigenpairs, null ones included");
-  visitor("eigen-solver", options.method, "how eigenpairs are computed");
-  visitor("dense-limit", options.dense_limit, "vertices up to which the dense solver is used");
-  visitor("eigen-tolerance", options.tolerance, "largest residual, relative to the norm");
-  visitor("check-inertia", options.check_inertia, "verify that no eigenvalue was missed");
-  visitor("max-restarts", options.max_restarts, "most restarts of the eigensolver");
+  visitor("eigen_solver", options.method, "how eigenpairs are computed");
+  visitor("dense_limit", options.dense_limit, "vertices up to which the dense solver is used");
+  visitor("eigen_tolerance", options.tolerance, "largest residual, relative to the norm");
+  visitor("check_inertia", options.check_inertia, "verify that no eigenvalue was missed");
+  visitor("max_restarts", options.max_restarts, "most restarts of the eigensolver");
 }
 
 enum class EigenStatus {

@@ -71,17 +71,19 @@ template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, HeatDistanceOptions>
 void visit_fields(Options& options, Visitor&& visitor) {
   visitor("tolerance", options.tolerance, "largest width of a heat distance's bracket");
-  visitor("heat-solver", options.method, "how heat distances are computed");
-  visitor("max-steps", options.max_steps, "most Lanczos steps a pair");
+  visitor("heat_solver", options.method, "how heat distances are computed");
+  visitor("max_steps", options.max_steps, "most Lanczos steps a pair");
 }
 
 /// Heat distances of `pairs` at `scales`, row-major: pairs x scales.
 struct HeatDistanceResult {
   std::vector<VertexPair> pairs;
   std::vector<double> scales;
+  std::vector<double> thresholds;      ///< one a scale, or none
   std::vector<CertifiedValue> values;  ///< pairs x scales
   std::vector<HeatMethod> methods;     ///< pairs x scales: which method decided
   std::vector<std::int32_t> steps;     ///< per pair: Lanczos steps taken
+  std::vector<bool> by_rational;       ///< per scale: given to the rational method
   std::vector<std::string> reasons;    ///< per scale: why its method was chosen
   std::int64_t unconverged = 0;        ///< values wider than asked for; their bracket still holds
   double widest = 0.0;                 ///< largest width of a bracket
@@ -118,6 +120,17 @@ class HeatDistance {
   /// one side of its scale's threshold (`thresholds` has one entry a scale).
   HeatDistanceResult evaluate(std::span<const VertexPair> pairs, std::span<const double> scales,
                               std::span<const double> thresholds) const;
+
+  /// Takes edges (by id, those removed before are skipped) out of the graph and
+  /// brings `result`, which evaluate() of this object gave, up to date.
+  ///
+  /// Only pairs whose evaluation looked at an end of a removed edge are
+  /// evaluated again, by the methods chosen before: those within m - 1 hops
+  /// after m Lanczos steps; values found by the rational method depend on the
+  /// whole component. Returns the number of pairs evaluated again.
+  /// @throws InvalidArgument for an id outside the graph; Cancelled, after which
+  ///   `result` is out of date.
+  std::int64_t remove_edges(std::span<const Index> edges, HeatDistanceResult& result);
 
  private:
   struct Impl;
