@@ -53,16 +53,19 @@ int HeatBracketer::run(const HeatTarget& target, const HeatGoal& goal,
   radau_diagonal_.clear();
   rule_work_ = 0;
   work_at_.assign(values.size(), 0);
-  // Rules are evaluated when as much has been spent on steps since the last time.
+  // Rules are evaluated when as much has been spent on steps since the last
+  // time; in small components, where steps cost little, as their number grows.
   std::int64_t checked_at = 0;
+  int next_check = kFirstCheck;
   for (;;) {
     lanczos_.step();
     const int steps = lanczos_.steps();
     const bool last = lanczos_.exhausted() || steps >= goal.max_steps ||
                       lanczos_.work() + rule_work_ >= goal.max_work;
     const bool worth = steps >= kFirstCheck && lanczos_.work() - checked_at >= kRuleCost * steps;
-    if (!last && !worth) continue;
+    if (!last && !worth && steps < next_check) continue;
     checked_at = lanczos_.work();
+    next_check = steps + std::max(2, steps / 3);
     extend_to_radau();
     if (settled_all(goal, values) || last) break;
   }

@@ -16,8 +16,8 @@ using isotherm_test::write_text;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr const char* kVerbs[] = {"info",  "simulate city", "corrupt",
-                                  "prune", "label",         "eval loops"};
+constexpr const char* kVerbs[] = {"info",  "simulate city", "corrupt", "prune",
+                                  "label", "eval loops",    "edges",   "embed"};
 
 class Contract : public CommandTest {
  protected:

@@ -1,0 +1,104 @@
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "console.hpp"
+#include "isotherm/spectral/graph_file.hpp"
+#include "isotherm/spectral/judge_edges.hpp"
+#include "isotherm/spectral/verdict_file.hpp"
+#include "verbs.hpp"
+
+namespace isotherm::apps {
+namespace {
+
+using namespace spectral;
+
+struct EdgesVerb {
+  CommonFlags flags;
+  std::string input;
+  std::string output;
+  std::string verdicts;
+  bool keep_ambiguous = false;
+  JudgeEdgesOptions options;
+  std::unique_ptr<FlaggedOptions<JudgeEdgesOptions>> flagged;
+
+  int run() {
+    flagged->resolve(read_config(flags));
+    if (flags.dump_config) {
+      write_json("-", options_to_json(options));
+      return kOk;
+    }
+    options.threads = flags.threads;
+    options.progress = progress_line(flags);
+    const auto file = read_graph(input, {.strict = flags.strict});
+    for (const auto& diagnostic : file.report.diagnostics) warn(flags, to_string(diagnostic));
+    auto result = judge_edges(file.graph, options);
+    name_vertices(result.verdicts, file.ids);
+    report(result);
+    if (!output.empty()) write_edge_csv(output, kept(file.graph, result.verdicts), file.ids);
+    if (!verdicts.empty()) write_verdicts(verdicts, result.verdicts);
+    write_json(flags.json, to_json(result));
+    return kOk;
+  }
+
+  // Verdict files carry the input's own vertex numbers.
+  static void name_vertices(EdgeVerdicts& all, const std::vector<std::uint64_t>& ids) {
+    for (auto& verdict : all) {
+      verdict.from = ids[verdict.from];
+      verdict.to = ids[verdict.to];
+    }
+  }
+
+  WeightedGraph kept(const WeightedGraph& graph, const EdgeVerdicts& all) const {
+    std::vector<bool> keep;
+    for (const auto& verdict : all) {
+      keep.push_back(verdict.verdict == Verdict::keep ||
+                     (keep_ambiguous && verdict.verdict == Verdict::ambiguous));
+    }
+    return filter_edges(graph, keep);
+  }
+
+  Json to_json(const JudgeEdgesResult& result) const {
+    const double threshold = result.threshold.value;
+    return {{"schema", "isotherm.edges/1"},
+            {"method", enum_name(options.method)},
+            {"candidates", result.verdicts.size()},
+            {"kept", count(result.verdicts, Verdict::keep)},
+            {"pruned", count(result.verdicts, Verdict::prune)},
+            {"ambiguous", count(result.verdicts, Verdict::ambiguous)},
+            // JSON has no infinity; null stands for "nothing to split".
+            {"threshold", std::isfinite(threshold) ? Json(threshold) : Json()},
+            {"separation", result.threshold.separation},
+            {"seconds", result.seconds},
+            {"options", options_to_json(options)}};
+  }
+
+  void report(const JudgeEdgesResult& result) const {
+    say(flags,
+        fmt::format("{}: {} edges, {} kept, {} pruned, {} ambiguous, {:.2f} s",
+                    enum_name(options.method), result.verdicts.size(),
+                    count(result.verdicts, Verdict::keep), count(result.verdicts, Verdict::prune),
+                    count(result.verdicts, Verdict::ambiguous), result.seconds));
+  }
+};
+
+}  // namespace
+
+Verb add_edges(CLI::App& root) {
+  auto edges = std::make_shared<EdgesVerb>();
+  CLI::App* verb = root.add_subcommand("edges", "remove false edges from a weighted graph");
+  verb->add_option("input", edges->input, "edge list or MatrixMarket file (- for stdin)")
+      ->required();
+  verb->add_option("-o,--output", edges->output, "kept edges to write, as CSV (- for stdout)")
+      ->type_name("FILE");
+  verb->add_option("--verdicts", edges->verdicts, "decision and reason an edge, as CSV")
+      ->type_name("FILE");
+  verb->add_flag("--keep-ambiguous", edges->keep_ambiguous,
+                 "keep edges that are not proven either way, such as bridges");
+  edges->flagged = std::make_unique<FlaggedOptions<JudgeEdgesOptions>>(*verb, edges->options);
+  add_common_flags(*verb, edges->flags);
+  return {verb, [edges] { return edges->run(); }};
+}
+
+}  // namespace isotherm::apps

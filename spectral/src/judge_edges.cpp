@@ -1,0 +1,136 @@
+#include "isotherm/spectral/judge_edges.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numeric>
+
+#include "isotherm/base/error.hpp"
+#include "isotherm/spectral/effective_resistance.hpp"
+#include "isotherm/spectral/heat_affinity.hpp"
+
+namespace isotherm::spectral {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
+
+std::vector<Index> other_neighbours(const WeightedGraph& graph, Index vertex, Index other) {
+  std::vector<Index> found;
+  for (const auto& neighbour : graph.neighbours(vertex)) {
+    if (neighbour.vertex != other && neighbour.vertex != vertex) found.push_back(neighbour.vertex);
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+std::vector<double> heat_scores(const WeightedGraph& graph, const JudgeEdgesOptions& options) {
+  // Affinities that the tolerance cannot tell from 0 speak of a bridge.
+  constexpr double kNoise = 4.0;
+  std::vector<Index> edges(graph.edges().size());
+  std::iota(edges.begin(), edges.end(), 0);
+  const auto affinities = leave_one_out_affinities(
+      graph, edges, std::vector<double>{options.scale},
+      {.tolerance = options.tolerance, .threads = options.threads, .progress = options.progress});
+  std::vector<double> scores;
+  for (const auto& affinity : affinities.values) {
+    const bool measurable = affinity.value > kNoise * affinity.width();
+    scores.push_back(measurable ? 1.0 / affinity.value : kUnknown);
+  }
+  return scores;
+}
+
+std::vector<double> resistance_scores(const WeightedGraph& graph) {
+  auto scores = edge_resistances(graph).values;
+  for (std::size_t e = 0; e < scores.size(); ++e) {
+    scores[e] = leave_one_out_resistance(scores[e], graph.edges()[e].weight);
+  }
+  return scores;
+}
+
+std::vector<double> jaccard_scores(const WeightedGraph& graph) {
+  std::vector<double> scores;
+  for (Index e = 0; e < graph.edge_count(); ++e) {
+    const double index = jaccard_index(graph, e);
+    scores.push_back(index < 0.0 ? kUnknown : 1.0 - index);
+  }
+  return scores;
+}
+
+std::vector<double> scores_of(const WeightedGraph& graph, const JudgeEdgesOptions& options) {
+  switch (options.method) {
+    case EdgeScore::heat:
+      return heat_scores(graph, options);
+    case EdgeScore::resistance:
+      return resistance_scores(graph);
+    case EdgeScore::jaccard:
+      return jaccard_scores(graph);
+  }
+  throw InvalidArgument("method", "is not a method");
+}
+
+EdgeVerdict judge(const WeightedEdge& edge, Index id, double score, double threshold,
+                  std::string_view method) {
+  EdgeVerdict verdict;
+  verdict.edge = id;
+  verdict.from = static_cast<std::uint64_t>(edge.from);
+  verdict.to = static_cast<std::uint64_t>(edge.to);
+  verdict.score = score;
+  verdict.threshold = threshold;
+  verdict.stage = method;
+  if (edge.from == edge.to) {
+    verdict.score = 0.0;
+    verdict.stage = "self-loop";
+  } else if (score == kUnknown) {
+    verdict.verdict = Verdict::ambiguous;
+    verdict.stage = "bridge";
+  } else if (score > threshold) {
+    verdict.verdict = Verdict::prune;
+  }
+  return verdict;
+}
+
+}  // namespace
+
+void JudgeEdgesOptions::validate() const {
+  if (!(std::isfinite(scale) && scale > 0.0)) {
+    throw InvalidArgument("scale", "must be finite and positive");
+  }
+  if (!std::isfinite(konst)) throw InvalidArgument("konst", "must be finite");
+  if (!(tolerance > 0.0)) throw InvalidArgument("tolerance", "must be positive");
+  if (threads < 0) throw InvalidArgument("threads", "must not be negative");
+}
+
+double jaccard_index(const WeightedGraph& graph, Index edge) {
+  const auto [from, to, weight] = graph.edge(edge);
+  const auto first = other_neighbours(graph, from, to);
+  const auto second = other_neighbours(graph, to, from);
+  std::vector<Index> common;
+  std::set_intersection(first.begin(), first.end(), second.begin(), second.end(),
+                        std::back_inserter(common));
+  const std::size_t all = first.size() + second.size() - common.size();
+  return all == 0 ? -1.0 : static_cast<double>(common.size()) / static_cast<double>(all);
+}
+
+JudgeEdgesResult judge_edges(const WeightedGraph& graph, const JudgeEdgesOptions& options) {
+  options.validate();
+  const auto start = std::chrono::steady_clock::now();
+  const auto scores = scores_of(graph, options);
+  std::vector<double> known;
+  for (std::size_t e = 0; e < scores.size(); ++e) {
+    const auto& edge = graph.edges()[e];
+    if (scores[e] != kUnknown && edge.from != edge.to) known.push_back(scores[e]);
+  }
+  JudgeEdgesResult result;
+  result.threshold = find_threshold(known, {.rule = options.threshold, .konst = options.konst});
+  for (Index e = 0; e < graph.edge_count(); ++e) {
+    result.verdicts.push_back(
+        judge(graph.edge(e), e, scores[e], result.threshold.value, enum_name(options.method)));
+  }
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace isotherm::spectral

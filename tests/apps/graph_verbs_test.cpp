@@ -1,0 +1,79 @@
+// The verbs on plain weighted graphs.
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "run_command.hpp"
+
+namespace {
+
+using isotherm_test::CommandTest;
+using isotherm_test::read_text;
+using isotherm_test::write_text;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class GraphVerbs : public CommandTest {
+ protected:
+  /// A strip of triangles, vertices numbered from 100, and one edge across it.
+  void make_strip() const {
+    std::string text = "from,to,weight\n";
+    for (int v = 0; v < 40; ++v) {
+      for (const int step : {1, 2, 3}) {
+        if (v + step < 40) {
+          text += std::to_string(100 + v) + "," + std::to_string(100 + v + step) + ",1\n";
+        }
+      }
+    }
+    text += "100,135,1\n";
+    write_text(folder / "strip.csv", text);
+  }
+};
+
+TEST_F(GraphVerbs, EdgesFindsTheShortCircuitByEveryMethod) {
+  make_strip();
+  for (const std::string method : {"heat", "resistance", "jaccard"}) {
+    run_ok("edges strip.csv -o kept.csv --verdicts verdicts.csv --json result.json --method " +
+           method);
+    EXPECT_THAT(read_text(folder / "verdicts.csv"), HasSubstr("\n114,100,135,prune,")) << method;
+    EXPECT_THAT(read_text(folder / "kept.csv"), testing::Not(HasSubstr("100,135")));
+    const auto json = read_text(folder / "result.json");
+    for (const char* key : {"isotherm.edges/1", "\"candidates\": 115", "\"pruned\"",
+                            "\"ambiguous\"", "\"threshold\"", "\"options\""}) {
+      EXPECT_THAT(json, HasSubstr(key)) << method;
+    }
+  }
+}
+
+TEST_F(GraphVerbs, EmbedWritesOneRowAVertex) {
+  make_strip();
+  for (const std::string method : {"commute-time", "heat", "eigenmaps"}) {
+    const auto text = run_ok("embed strip.csv -o - --dimensions 3 --method " + method);
+    EXPECT_THAT(text, StartsWith("vertex,x0,x1,x2\n100,")) << method;
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 41);
+  }
+  run_ok("embed strip.csv -o rows.npy --dimensions 3 --laplacian normalised --json result.json");
+  const auto bytes = read_text(folder / "rows.npy");
+  EXPECT_THAT(bytes, StartsWith("\x93NUMPY"));
+  EXPECT_THAT(bytes, HasSubstr("'shape': (40, 3)"));
+  EXPECT_EQ(bytes.size() % 64, (40 * 3 * 8) % 64);
+  EXPECT_THAT(read_text(folder / "result.json"), HasSubstr("\"converged\": true"));
+}
+
+TEST_F(GraphVerbs, SmallGraphsAndBadInput) {
+  write_text(folder / "edge.csv", "7 9\n");
+  EXPECT_THAT(run_ok("embed edge.csv -o - --dimensions 5"), StartsWith("vertex,x0\n7,"));
+  EXPECT_THAT(run_ok("edges edge.csv --verdicts -"), HasSubstr("7,9,ambiguous"));
+  write_text(folder / "bad.csv", "from,to,weight\n1,2,nan\n");
+  for (const std::string verb : {"edges", "embed"}) {
+    const auto result = run(verb + " bad.csv -o out.csv");
+    EXPECT_EQ(result.code, 3);
+    EXPECT_THAT(result.err, HasSubstr("bad.csv:2"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.csv"));
+  }
+  EXPECT_EQ(run("embed edge.csv -o - --dimensions 0").code, 2);
+  EXPECT_EQ(run("edges edge.csv --scale -1").code, 2);
+}
+
+}  // namespace
