@@ -29,6 +29,21 @@ Json to_json(const HeatRound& round) {
           {"candidates", round.candidates}, {"pruned", round.pruned}};
 }
 
+Json to_json(const ConsensusResult& result) {
+  Json json = {{"inlier_fraction", result.inlier_fraction},
+               {"odometry_scale", result.odometry_scale},
+               {"loop_scale", result.loop_scale},
+               {"settled", result.settled},
+               {"rounds", Json::array()}};
+  for (const auto& round : result.rounds) {
+    json["rounds"].push_back({{"rule", round.rule},
+                              {"accepted", round.accepted},
+                              {"dropped", round.dropped},
+                              {"in_force", round.in_force}});
+  }
+  return json;
+}
+
 Json to_json(const PruneResult& result, const PruneOptions& options) {
   Json json = {{"schema", "isotherm.prune/1"},
                {"method", enum_name(result.method)},
@@ -43,6 +58,7 @@ Json to_json(const PruneResult& result, const PruneOptions& options) {
     json["rounds"] = Json::array();
     for (const auto& round : result.rounds) json["rounds"].push_back(to_json(round));
   }
+  if (result.method == PruneMethod::consensus) json["consensus"] = to_json(result.consensus);
   return json;
 }
 
@@ -78,6 +94,10 @@ struct PruneVerb : OptionVerb<PruneOptions> {
 
   void report(const PruneResult& result) const {
     for (const auto& warning : result.warnings) warn(flags, warning);
+    for (const auto& round : result.consensus.rounds) {
+      detail_line(flags, fmt::format("{:>9}: {} loops accepted, {} dropped, {} in force",
+                                     round.rule, round.accepted, round.dropped, round.in_force));
+    }
     for (const auto& round : result.rounds) {
       detail_line(flags, fmt::format("scale {:>6}: {} of {} loops pruned, threshold {:.4g}",
                                      round.scale, round.pruned, round.candidates, round.threshold));

@@ -15,6 +15,23 @@ using spectral::EdgeVerdicts;
 using spectral::Verdict;
 
 template <class Pose>
+PruneResult prune_by_consensus(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                               const PruneOptions& options) {
+  ConsensusOptions own = options.consensus;
+  own.significance = options.significance;
+  own.threads = options.threads;
+  own.progress = options.progress;
+  PruneResult result;
+  result.consensus = consensus(graph, roles, own);
+  result.verdicts = std::move(result.consensus.verdicts);
+  if (!result.consensus.settled) {
+    result.warnings.push_back("consensus stopped after " + std::to_string(own.max_rounds) +
+                              " rounds with loops still in question");
+  }
+  return result;
+}
+
+template <class Pose>
 PruneResult prune_by_heat(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                           const PruneOptions& options) {
   HeatPruneOptions heat = options.heat;
@@ -59,6 +76,8 @@ template <class Pose>
 PruneResult run_method(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                        const PruneOptions& options) {
   switch (options.method) {
+    case PruneMethod::consensus:
+      return prune_by_consensus(graph, roles, options);
     case PruneMethod::heat:
       return prune_by_heat(graph, roles, options);
     case PruneMethod::chi2:
@@ -75,6 +94,7 @@ void PruneOptions::validate() const {
   }
   if (threads < 0) throw InvalidArgument("threads", "must not be negative");
   heat.validate();
+  consensus.validate();
 }
 
 template <class Pose>

@@ -8,6 +8,7 @@
 
 #include "isotherm/base/options.hpp"
 #include "isotherm/base/progress.hpp"
+#include "isotherm/slam/consensus.hpp"
 #include "isotherm/slam/heat_prune.hpp"
 #include "isotherm/slam/pose_graph.hpp"
 #include "isotherm/spectral/edge_verdicts.hpp"
@@ -16,20 +17,24 @@ namespace isotherm::slam {
 
 /// How false loop closures are found.
 enum class PruneMethod {
-  heat,  ///< multi-scale heat-kernel pruning, see heat_prune.hpp
-  chi2,  ///< chi-squared of each loop against odometry alone, see odometry_chi2.hpp
+  consensus,  ///< forward consensus, see consensus.hpp
+  heat,       ///< multi-scale heat-kernel pruning, see heat_prune.hpp
+  chi2,       ///< chi-squared of each loop against odometry alone, see odometry_chi2.hpp
 };
 
-constexpr std::array<EnumName<PruneMethod>, 2> enum_names(PruneMethod) {
-  return {{{PruneMethod::heat, "heat"}, {PruneMethod::chi2, "chi2"}}};
+constexpr std::array<EnumName<PruneMethod>, 3> enum_names(PruneMethod) {
+  return {{{PruneMethod::consensus, "consensus"},
+           {PruneMethod::heat, "heat"},
+           {PruneMethod::chi2, "chi2"}}};
 }
 
 struct PruneOptions {
-  PruneMethod method = PruneMethod::heat;
+  PruneMethod method = PruneMethod::consensus;
   /// Probability with which a correct loop may be pruned, where a method tests
   /// against a distribution; in (0, 1).
-  double significance = 0.01;
+  double significance = 0.0001;
   HeatPruneOptions heat;
+  ConsensusOptions consensus;
   ProgressCallback progress = {};
   int threads = 0;  ///< 0: all cores; results do not depend on it
 
@@ -42,14 +47,16 @@ requires std::same_as<std::remove_const_t<Options>, PruneOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("method", options.method, "how false loop closures are found");
   visit("significance", options.significance,
-        "probability with which a correct loop may be pruned (chi2)");
+        "probability with which a correct loop may be pruned (consensus, chi2)");
+  visit_fields(options.consensus, visit);
   visit_fields(options.heat, visit);
 }
 
 struct PruneResult {
-  PruneMethod method = PruneMethod::heat;
+  PruneMethod method = PruneMethod::consensus;
   spectral::EdgeVerdicts verdicts;    ///< one a candidate, in file order
   std::vector<HeatRound> rounds;      ///< method heat: one a scale
+  ConsensusResult consensus;          ///< method consensus: all but the verdicts
   std::vector<std::string> warnings;  ///< what a user should know about the result
   double seconds = 0.0;               ///< wall time
 };

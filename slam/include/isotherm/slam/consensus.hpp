@@ -1,0 +1,90 @@
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "isotherm/base/progress.hpp"
+#include "isotherm/slam/pose_graph.hpp"
+#include "isotherm/spectral/edge_verdicts.hpp"
+
+namespace isotherm::slam {
+
+/// Forward consensus: loops are accepted in the order in which the rest of the
+/// graph can vouch for them. See docs/concepts/consensus.md.
+struct ConsensusOptions {
+  /// Probability with which a correct loop may be pruned, and with which an
+  /// accepted one may be false; in (0, 0.5). Every threshold follows from it.
+  double significance = 0.0001;
+  /// Loops whose ends lie within this many vertices of each other, at both ends,
+  /// can confirm each other; > 0.
+  Index window = 20;
+  /// Estimate factors on the covariances of odometry and of loops from the data;
+  /// they are never taken as smaller than the file says.
+  bool calibrate = true;
+  int max_rounds = 200;  ///< batches accepted at most, > 0
+  int threads = 0;       ///< 0: all cores; results do not depend on it
+  ProgressCallback progress = {};
+
+  /// @throws InvalidArgument naming the field that is out of range.
+  void validate() const;
+};
+
+template <class Options, class Visitor>
+requires std::same_as<std::remove_const_t<Options>, ConsensusOptions>
+void visit_fields(Options& options, Visitor&& visit) {
+  visit("window", options.window,
+        "consensus: vertices within which the ends of loops that confirm each other lie");
+  visit("calibrate", options.calibrate,
+        "consensus: estimate the scale of the covariances from the data");
+  visit("max_rounds", options.max_rounds, "consensus: batches accepted at most");
+}
+
+/// Why one candidate was decided as it was.
+struct ConsensusDetail {
+  double chi2 = 0.0;      ///< against the prediction of the other accepted loops
+  double evidence = 0.0;  ///< log odds of inlier against anywhere, without the prior
+  int round = 0;          ///< round that accepted it; 0: never accepted
+  bool connected = true;  ///< false: neither odometry nor accepted loops join its ends
+  /// Accepted loops (constraint numbers) near it that contradict it directly.
+  std::vector<Index> conflicts;
+};
+
+/// What one round did.
+struct ConsensusRound {
+  std::int64_t accepted = 0;  ///< in this round
+  std::int64_t dropped = 0;   ///< accepted before, inconsistent now
+  std::int64_t in_force = 0;  ///< accepted loops after the round
+  std::string rule;           ///< "evidence", "cluster" or "prior"
+};
+
+struct ConsensusResult {
+  /// One a candidate, in file order: score is chi-squared against the prediction of
+  /// the accepted loops, threshold its gate, stage the round or reason.
+  spectral::EdgeVerdicts verdicts;
+  std::vector<ConsensusDetail> details;  ///< one a candidate
+  std::vector<ConsensusRound> rounds;
+  double inlier_fraction = 0.5;  ///< of the loops that were decided, as learnt
+  double odometry_scale = 1.0;   ///< factor on the covariances of odometry
+  double loop_scale = 1.0;       ///< factor on the covariances of loops
+  bool settled = true;           ///< false: max_rounds ended the search
+};
+
+/// Decides which candidates agree with odometry and with each other.
+///
+/// Odometry is contracted between the ends of candidates. Each round estimates
+/// the poses from odometry and the accepted loops, predicts every other candidate
+/// with its covariance, and accepts those whose residual is inside the chi-squared
+/// gate and far more likely than a residual anywhere on the map; the most certain
+/// first. Where no single loop is certain, groups of loops that confirm each other
+/// compete. Accepted loops that the others come to contradict are dropped again.
+/// Time is that of a sparse factorisation a round and of one sparse half-solve for
+/// every candidate still in question.
+/// @throws InvalidArgument, NumericalError, Cancelled
+template <class Pose>
+ConsensusResult consensus(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                          const ConsensusOptions& options = {});
+
+}  // namespace isotherm::slam

@@ -1,0 +1,47 @@
+#include "isotherm/slam/consensus.hpp"
+
+#include <cmath>
+
+#include "../candidate_verdicts.hpp"
+#include "isotherm/base/error.hpp"
+#include "search.hpp"
+
+namespace isotherm::slam {
+namespace {
+
+using detail::Search;
+using spectral::Verdict;
+
+}  // namespace
+
+void ConsensusOptions::validate() const {
+  if (!(significance > 0.0 && significance < 0.5)) {
+    throw InvalidArgument("significance", "must be in (0, 0.5)");
+  }
+  if (window <= 0) throw InvalidArgument("window", "must be positive");
+  if (max_rounds <= 0) throw InvalidArgument("max_rounds", "must be positive");
+  if (threads < 0) throw InvalidArgument("threads", "must not be negative");
+}
+
+template <class Pose>
+ConsensusResult consensus(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                          const ConsensusOptions& options) {
+  options.validate();
+  ConsensusResult result;
+  result.verdicts = candidate_verdicts(graph, roles);
+  if (roles.candidates.empty()) return result;
+  const auto reduced = detail::reduce(graph, roles);
+  Search<Pose> search(reduced, options);
+  search.run(result);
+  for (auto& info : result.details) {
+    for (Index& loop : info.conflicts) loop = roles.candidates[loop];
+  }
+  return result;
+}
+
+template ConsensusResult consensus(const PoseGraph<Pose2>&, const EdgeRoles&,
+                                   const ConsensusOptions&);
+template ConsensusResult consensus(const PoseGraph<Pose3>&, const EdgeRoles&,
+                                   const ConsensusOptions&);
+
+}  // namespace isotherm::slam

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "estimate.hpp"
+#include "map_volume.hpp"
+#include "reduced_graph.hpp"
+
+namespace isotherm::slam::detail {
+
+/// Two loops that confirm each other.
+struct Support {
+  Index first = 0;
+  Index second = 0;
+  /// Log density of one loop's measurement as the other predicts it, relative to
+  /// "anywhere on the map".
+  double gain = 0.0;
+};
+
+/// How loops with neighbouring ends agree with each other.
+struct MutualSupport {
+  std::vector<Support> agreeing;       ///< by descending gain
+  std::vector<Support> contradicting;  ///< chi-squared outside the gate
+};
+
+/// Compares every loop with the nearest others whose two ends lie within `window`
+/// vertices of its own along odometry, whichever way each is stated.
+///
+/// One loop and the two short pieces of odometry between the ends predict the
+/// other loop; the prediction does not depend on the estimate, nor on how far
+/// odometry has drifted between the two ends. O(q log n).
+template <class Pose>
+MutualSupport mutual_support(const ReducedGraph<Pose>& graph, const MapVolume<Pose>& map,
+                             const CovarianceScale& scale, Index window, double gate);
+
+}  // namespace isotherm::slam::detail

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <vector>
+
+#include "estimate.hpp"
+#include "isotherm/slam/consensus.hpp"
+#include "map_volume.hpp"
+#include "mutual_support.hpp"
+#include "reduced_graph.hpp"
+
+namespace isotherm::slam::detail {
+
+/// The state of forward consensus between two rounds.
+template <class Pose>
+class Search {
+ public:
+  using Matrix = typename Pose::Matrix;
+  using Tangent = typename Pose::Tangent;
+
+  using Selection = std::vector<Index>;
+
+  /// Both must outlive this object.
+  Search(const ReducedGraph<Pose>& graph, const ConsensusOptions& options);
+
+  /// Runs to the end and fills in everything in `result` but the verdicts' edges.
+  void run(ConsensusResult& result);
+
+ private:
+  /// What is known about one loop.
+  struct State {
+    bool accepted = false;
+    bool connected = false;
+    int round = 0;
+    int drops = 0;
+    // Of T_a^-1 T_b as predicted by the other accepted loops, or for an accepted loop
+    // by all of them: as last solved for, and so an upper bound.
+    Matrix covariance = Matrix::Zero();
+    Evidence evidence;
+  };
+  void accept_while_possible();
+  bool accept_next_batch();
+  bool readmit();
+  void settle();
+  void drop(Index loop);
+  void forget_bounds();
+  bool drop_inconsistent();
+  void assess();
+  void weigh_afresh(const Selection& loops);
+  Evidence weigh_loop(Index loop, const Matrix& covariance) const;
+  double fitted_chi2(Index loop, const Matrix& covariance) const;
+  std::vector<Matrix> fresh_covariances(const Selection& loops) const;
+
+  Selection in_question() const;
+  Selection certain_singles() const;
+  Selection strongest_clusters() const;
+  Selection likely_rest() const;
+  Selection most_certain_third(Selection passing) const;
+  double log_odds(Index loop) const;
+  double prior_log_odds() const { return std::log(inlier_fraction_ / (1.0 - inlier_fraction_)); }
+  void learn_fractions();
+  void accept(const Selection& batch, const char* rule);
+  bool calibrate();
+  void find_support();
+  void report(ConsensusResult& result) const;
+  bool inside_gate(Index loop) const { return states_[loop].evidence.chi2 <= gate_; }
+
+  const ReducedGraph<Pose>& graph_;
+  const ConsensusOptions& options_;
+  double gate_;           // chi-squared of a correct loop stays below it
+  double required_odds_;  // log odds from which a loop counts as proven
+  MapVolume<Pose> map_;
+  Estimate<Pose> estimate_;
+  CovarianceScale scale_;
+  MutualSupport support_;
+  std::vector<State> states_;
+  std::vector<bool> accepted_;
+  std::vector<ConsensusRound> rounds_;
+  double inlier_fraction_ = 0.5;
+  double alike_fraction_ = 0.2;  // of false loops that agree with a neighbouring false loop
+  bool settled_ = true;
+};
+
+extern template class Search<Pose2>;
+extern template class Search<Pose3>;
+
+}  // namespace isotherm::slam::detail

@@ -1,0 +1,206 @@
+#include "isotherm/slam/consensus.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "isotherm/base/error.hpp"
+#include "isotherm/slam/corrupt.hpp"
+#include "isotherm/slam/evaluate_loops.hpp"
+#include "isotherm/slam/io/pose_graph_file.hpp"
+#include "isotherm/slam/simulate.hpp"
+#include "isotherm_test/data.hpp"
+#include "slam/loop_graph.hpp"
+
+namespace isotherm::slam {
+namespace {
+
+using isotherm_test::random_loop_graph;
+using spectral::Verdict;
+
+template <class Pose>
+class ConsensusOf : public testing::Test {};
+using Poses = testing::Types<Pose2, Pose3>;
+TYPED_TEST_SUITE(ConsensusOf, Poses);
+
+TYPED_TEST(ConsensusOf, KeepsACleanGraphAsItIs) {
+  using Pose = TypeParam;
+  Random random(31);
+  const auto made = random_loop_graph<Pose>(random, 80, 40, 1.0);
+  const auto result = consensus(made.graph, edge_roles(made.graph));
+  EXPECT_EQ(count(result.verdicts, Verdict::keep), 40);
+  EXPECT_TRUE(result.settled);
+  EXPECT_LT(result.odometry_scale, 1.5);
+  EXPECT_LT(result.loop_scale, 1.5);
+}
+
+TYPED_TEST(ConsensusOf, FindsFalseLoops) {
+  using Pose = TypeParam;
+  Random random(32);
+  const auto made = random_loop_graph<Pose>(random, 80, 30, 1.0);
+  for (const auto type : {NoiseType::random, NoiseType::random_grouped}) {
+    const auto bad = corrupt(made.graph, made.truth,
+                             {.style = NoiseStyle::paper, .type = type, .count = 60, .seed = 3});
+    const auto result = consensus(bad.graph, edge_roles(bad.graph));
+    const auto metrics = evaluate_loops(result.verdicts, bad.labels);
+    EXPECT_EQ(metrics.precision(), 1.0);
+    EXPECT_EQ(metrics.recall(), 1.0);
+    for (std::size_t k = 0; k < result.verdicts.size(); ++k) {
+      const auto& verdict = result.verdicts[k];
+      EXPECT_EQ(verdict.verdict == Verdict::prune, verdict.score > verdict.threshold);
+      EXPECT_EQ(verdict.verdict == Verdict::keep, result.details[k].round > 0);
+      EXPECT_EQ(verdict.score, result.details[k].chi2);
+    }
+  }
+}
+
+// Two robots that share no odometry: only loops that confirm each other can join
+// them, and a false one among them must not.
+TYPED_TEST(ConsensusOf, JoinsRobotsByLoopsThatConfirmEachOther) {
+  using Pose = TypeParam;
+  Random random(33);
+  auto made = random_loop_graph<Pose>(random, 60, 0, 0.1);
+  made.graph.constraints.erase(made.graph.constraints.begin() + 29);
+  for (Index v = 0; v < 60; ++v) made.graph.ids[v] = (v < 30 ? 'a' : 'b') * (1ull << 56) + v;
+  for (Index k = 3; k < 27; k += 3) {
+    Constraint<Pose> loop{k, k + 30, made.truth[k].inverse() * made.truth[k + 30]};
+    loop.information = 1e4 * Pose::Matrix::Identity();
+    made.graph.constraints.push_back(loop);
+  }
+  typename Pose::Tangent xi = Pose::Tangent::Zero();
+  xi[1] = 20.0;
+  auto& wrong = made.graph.constraints.back();
+  wrong.T_from_to = wrong.T_from_to * Pose::exp(xi);
+
+  const auto result = consensus(made.graph, edge_roles(made.graph));
+  EXPECT_EQ(count(result.verdicts, Verdict::keep), 7);
+  EXPECT_EQ(result.verdicts.back().verdict, Verdict::prune);
+  EXPECT_THAT(result.details.back().conflicts, testing::Not(testing::IsEmpty()))
+      << "its accepted neighbours contradict it";
+}
+
+TYPED_TEST(ConsensusOf, OneLoopBetweenTwoRobotsIsNeitherProvenNorRefuted) {
+  using Pose = TypeParam;
+  Random random(34);
+  auto made = random_loop_graph<Pose>(random, 20, 0, 0.1);
+  made.graph.constraints.erase(made.graph.constraints.begin() + 9);
+  made.graph.constraints.push_back({2, 15, Pose(), Pose::Matrix::Identity()});
+  const auto result = consensus(made.graph, edge_roles(made.graph));
+  EXPECT_EQ(result.verdicts.front().verdict, Verdict::ambiguous);
+  EXPECT_FALSE(result.details.front().connected);
+}
+
+TYPED_TEST(ConsensusOf, LearnsThatInformationIsOverconfident) {
+  using Pose = TypeParam;
+  Random random(35);
+  auto made = random_loop_graph<Pose>(random, 100, 150, 1.0);
+  for (const Index k : edge_roles(made.graph).candidates) {
+    made.graph.constraints[k].information *= 4.0;  // half the true deviations
+  }
+  const auto result = consensus(made.graph, edge_roles(made.graph), {.significance = 1e-6});
+  EXPECT_NEAR(result.loop_scale, 4.0, 1.0);
+  EXPECT_LT(result.odometry_scale, 1.5);
+  EXPECT_GE(count(result.verdicts, Verdict::keep), 148);
+}
+
+TYPED_TEST(ConsensusOf, DegenerateGraphs) {
+  using Pose = TypeParam;
+  PoseGraph<Pose> graph;
+  EXPECT_TRUE(consensus(graph, edge_roles(graph)).verdicts.empty());
+
+  Random random(36);
+  graph = isotherm_test::random_chain<Pose>(random, 10);
+  EXPECT_TRUE(consensus(graph, edge_roles(graph)).verdicts.empty()) << "no candidate";
+
+  // A loop from a pose to itself, one that claims nothing, a repeated step.
+  graph.constraints.push_back({4, 4, Pose(), Pose::Matrix::Identity()});
+  graph.constraints.push_back({1, 8, Pose(), Pose::Matrix::Zero()});
+  graph.constraints.push_back(graph.constraints.front());
+  const auto result = consensus(graph, edge_roles(graph));
+  ASSERT_EQ(result.verdicts.size(), 3u);
+  EXPECT_EQ(count(result.verdicts, Verdict::prune), 0);
+
+  graph.constraints.back().information(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(consensus(graph, edge_roles(graph)), NumericalError);
+}
+
+TYPED_TEST(ConsensusOf, ProgressIsReportedAndCanCancel) {
+  using Pose = TypeParam;
+  Random random(37);
+  const auto made = random_loop_graph<Pose>(random, 60, 30, 1.0);
+  const auto roles = edge_roles(made.graph);
+  int calls = 0;
+  ConsensusOptions options;
+  options.progress = [&calls](const Progress& progress) {
+    EXPECT_LE(progress.done, progress.total);
+    ++calls;
+    return true;
+  };
+  const auto result = consensus(made.graph, roles, options);
+  EXPECT_EQ(calls, static_cast<int>(result.rounds.size()));
+  options.progress = [](const Progress&) { return false; };
+  EXPECT_THROW(consensus(made.graph, roles, options), Cancelled);
+}
+
+TEST(Consensus, SameVerdictsForAnyNumberOfThreads) {
+  const auto city = simulate_city({.poses = 400, .loops = 150, .drift = 10.0, .seed = 5});
+  const auto bad =
+      corrupt(city.graph, city.truth, {.type = NoiseType::random_grouped, .count = 150, .seed = 5});
+  const auto roles = edge_roles(bad.graph);
+  const auto one = consensus(bad.graph, roles, {.threads = 1});
+  const auto two = consensus(bad.graph, roles, {.threads = 2});
+  for (std::size_t k = 0; k < one.verdicts.size(); ++k) {
+    EXPECT_EQ(one.verdicts[k].verdict, two.verdicts[k].verdict);
+    EXPECT_EQ(one.verdicts[k].score, two.verdicts[k].score);
+    EXPECT_EQ(one.verdicts[k].stage, two.verdicts[k].stage);
+  }
+}
+
+TEST(Consensus, SurvivesDriftAndGroupsInACity) {
+  const auto city = simulate_city({.poses = 1500, .drift = 20.0, .seed = 1});
+  for (const std::int64_t size : {5, 20}) {
+    const auto bad = corrupt(
+        city.graph, city.truth,
+        {.type = NoiseType::random_grouped, .fraction = 0.5, .group_size = size, .seed = 1});
+    const auto result = consensus(bad.graph, edge_roles(bad.graph));
+    const auto metrics = evaluate_loops(result.verdicts, bad.labels);
+    EXPECT_GE(metrics.precision(), 0.99);
+    EXPECT_GE(metrics.recall(), 0.99);
+  }
+}
+
+TEST(Consensus, OptionsAreChecked) {
+  const PoseGraph<Pose2> graph;
+  const EdgeRoles roles;
+  EXPECT_THROW(consensus(graph, roles, {.significance = 0.0}), InvalidArgument);
+  EXPECT_THROW(consensus(graph, roles, {.significance = 0.5}), InvalidArgument);
+  EXPECT_THROW(consensus(graph, roles, {.window = 0}), InvalidArgument);
+  EXPECT_THROW(consensus(graph, roles, {.max_rounds = 0}), InvalidArgument);
+  EXPECT_THROW(consensus(graph, roles, {.threads = -1}), InvalidArgument);
+}
+
+// The sums of distances are those of the files: nothing true is lost on clean data.
+TEST(Consensus, KeepsRealCleanGraphs) {
+  for (const std::string name : {"MIT/MIT", "CSAIL/CSAIL", "intel/intel"}) {
+    ISOTHERM_REAL_DATA_OR_SKIP(path, "posegraph2d/" + name + ".g2o");
+    const auto file = read_pose_graph(path.string());
+    const auto& graph = std::get<PoseGraph<Pose2>>(file.graph);
+    const auto result = consensus(graph, edge_roles(graph));
+    EXPECT_EQ(count(result.verdicts, Verdict::keep),
+              static_cast<std::int64_t>(result.verdicts.size()))
+        << name;
+  }
+}
+
+TEST(Consensus, FindsGroupedFalseLoopsOfRingCity) {
+  ISOTHERM_REAL_DATA_OR_SKIP(path, "outliers/ringCity_randomgrouped_100.g2o.gz");
+  ISOTHERM_REAL_DATA_OR_SKIP(labels, "outliers/ringCity_randomgrouped_100.labels.csv");
+  const auto file = read_pose_graph(path.string());
+  const auto& graph = std::get<PoseGraph<Pose2>>(file.graph);
+  const auto result = consensus(graph, edge_roles(graph));
+  const auto metrics = evaluate_loops(result.verdicts, read_labels(labels.string()));
+  EXPECT_EQ(metrics.precision(), 1.0);
+  EXPECT_EQ(metrics.recall(), 1.0);
+}
+
+}  // namespace
+}  // namespace isotherm::slam
