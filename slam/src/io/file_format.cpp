@@ -45,6 +45,8 @@ bool has_named_vertex(const std::vector<std::string_view>& tokens) {
 
 FileFormat format_of_record(const std::vector<std::string_view>& tokens) {
   const auto tag = tokens.front();
+  if (tag == "range2" || tag == "odom2diff") return FileFormat::librsf;
+  if (tag == "point2") return FileFormat::points;
   const bool known = tag.starts_with("VERTEX") || tag.starts_with("EDGE") || tag == "FIX";
   if (!known) return FileFormat::unknown;
   if (tag == "EDGE_RANGE" || has_named_vertex(tokens)) return FileFormat::pyfg;
@@ -53,7 +55,9 @@ FileFormat format_of_record(const std::vector<std::string_view>& tokens) {
 }
 
 FileFormat format_of_header(const std::vector<std::string_view>& names) {
-  if (contains(names, "from") && contains(names, "to")) return FileFormat::edges;
+  if (contains(names, "from") && contains(names, "to")) {
+    return contains(names, "range") ? FileFormat::ranges : FileFormat::edges;
+  }
   if (contains(names, "time") || contains(names, "timestamp")) {
     return names.size() >= 8 ? FileFormat::euroc : FileFormat::planar;
   }
@@ -85,7 +89,41 @@ FileFormat format_of_line(std::string_view line) {
   const bool commas = line.find(',') != std::string_view::npos;
   double number = 0.0;
   if (parse_number(tokens.front(), number)) return format_of_row(tokens, commas);
-  return commas ? format_of_header(tokens) : format_of_record(tokens);
+  const auto record = format_of_record(tokens);
+  return record != FileFormat::unknown || !commas ? record : format_of_header(tokens);
+}
+
+// i j lower upper, vertices counted from 1, perhaps followed by names.
+bool is_interval(const std::vector<std::string_view>& tokens) {
+  std::uint64_t i = 0;
+  std::uint64_t j = 0;
+  double lower = 0.0;
+  double upper = 0.0;
+  double number = 0.0;
+  return tokens.size() >= 4 && parse_unsigned(tokens[0], i) && parse_unsigned(tokens[1], j) &&
+         parse_number(tokens[2], lower) && parse_number(tokens[3], upper) && i > 0 && j > 0 &&
+         i != j && lower > 0.0 && lower <= upper &&
+         (tokens.size() == 4 || !parse_number(tokens[4], number));
+}
+
+// A planar trajectory may start like an interval; that all rows look like one
+// would be a coincidence.
+bool has_only_intervals(std::string_view text) {
+  std::size_t rows = 0;
+  while (!text.empty()) {
+    const auto newline = text.find('\n');
+    // The last line may be cut off.
+    if (newline == std::string_view::npos && rows > 0) break;
+    const auto line = text.substr(0, newline);
+    const auto tokens = tokens_of(line);
+    if (!tokens.empty() && tokens.front().front() != '#') {
+      if (line.find(',') != std::string_view::npos || !is_interval(tokens)) return false;
+      ++rows;
+    }
+    if (newline == std::string_view::npos) break;
+    text.remove_prefix(newline + 1);
+  }
+  return rows > 0;
 }
 
 }  // namespace
@@ -96,11 +134,15 @@ FileContent content_of(FileFormat format) {
     case FileFormat::toro:
       return FileContent::pose_graph;
     case FileFormat::pyfg:
+    case FileFormat::ranges:
+    case FileFormat::librsf:
+    case FileFormat::intervals:
       return FileContent::ranges;
     case FileFormat::tum:
     case FileFormat::kitti:
     case FileFormat::euroc:
     case FileFormat::planar:
+    case FileFormat::points:
       return FileContent::trajectory;
     case FileFormat::edges:
     case FileFormat::matrix_market:
@@ -113,6 +155,7 @@ FileContent content_of(FileFormat format) {
 
 FileFormat detect_format(TextReader& reader) {
   std::string_view rest = reader.peek();
+  if (has_only_intervals(rest)) return FileFormat::intervals;
   while (!rest.empty()) {
     const auto newline = rest.find('\n');
     const auto format = format_of_line(rest.substr(0, newline));
@@ -121,6 +164,15 @@ FileFormat detect_format(TextReader& reader) {
     rest.remove_prefix(newline + 1);
   }
   return FileFormat::unknown;
+}
+
+FileFormat require_format(TextReader& reader) {
+  const auto format = detect_format(reader);
+  if (format != FileFormat::unknown) return format;
+  const auto start = reader.peek();
+  if (start.empty()) throw ParseError({reader.path(), 0, 0}, "", "the file is empty");
+  throw ParseError({reader.path(), 1, 0}, std::string(start.substr(0, start.find('\n'))),
+                   "unknown format; expected " + joined_enum_names<FileFormat>(", ").substr(9));
 }
 
 }  // namespace isotherm::slam

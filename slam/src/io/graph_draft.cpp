@@ -191,17 +191,17 @@ class Finisher {
     const auto odometry = median_edge(roles.odometry, good);
     const auto candidate = median_edge(roles.candidates, good);
 
-    for (const auto& [k, column] : draft_.indefinite) {
+    for (const auto& [k, column, token] : draft_.indefinite) {
       const auto own = is_odometry[k] ? odometry : candidate;
       const auto source = own ? own : (is_odometry[k] ? candidate : odometry);
       auto& constraint = graph_.constraints[k];
       const std::string kind = is_odometry[k] ? "odometry" : "loop";
       if (!source) {
-        throw ParseError(at(constraint.line, column), "",
+        throw ParseError(at(constraint.line, column), token,
                          "information matrix is not positive semi-definite, and no edge has one "
                          "that could stand in");
       }
-      report_.add_repair(options_, {"information replaced", at(constraint.line, column), "",
+      report_.add_repair(options_, {"information replaced", at(constraint.line, column), token,
                                     "information matrix of this " + kind +
                                         " edge is not positive semi-definite; replaced by the "
                                         "median, from line " +

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct GraphDraft {
   struct Suspect {
     std::size_t constraint = 0;
     std::uint64_t column = 0;  // where its information starts
+    std::string token;         // its text; only for as many as a report keeps
   };
 
   std::vector<Vertex> vertices;

@@ -22,6 +22,10 @@ constexpr double kUnitSquaredNorm = 16 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
+std::string PoseFields::text_from(const SourceLocation& where) const {
+  return std::string(reader_.text_from(where.column));
+}
+
 double PoseFields::angle() {
   const double radians = reader_.number("an angle in radians");
   constexpr double kPi = std::numbers::pi;
@@ -53,12 +57,13 @@ Eigen::Quaterniond PoseFields::quaternion(bool w_first) {
   const double norm = q.norm();
   const double error = std::abs(norm - 1.0);
   if (!(error <= kLargestNormError)) {
-    throw ParseError(where, "", "expected a unit quaternion, its norm is " + format_number(norm));
+    throw ParseError(where, text_from(where),
+                     "expected a unit quaternion, its norm is " + format_number(norm));
   }
   if (error <= kPrintedRounding) {
     ++rounded_quaternions_;
   } else {
-    report_.add_repair(options_, {"quaternion normalised", where, "",
+    report_.add_repair(options_, {"quaternion normalised", where, text_from(where),
                                   "quaternion of norm " + format_number(norm) + "; normalised"});
   }
   return q.normalized();
@@ -105,10 +110,12 @@ Eigen::Quaterniond PoseFields::nearest_rotation(const Eigen::Matrix3d& matrix,
                                                 const SourceLocation& where) {
   const double error = (matrix.transpose() * matrix - Eigen::Matrix3d::Identity()).norm();
   if (!(error <= kLargestNormError) || matrix.determinant() < 0.0) {
-    throw ParseError(where, "", "expected a rotation matrix, |R'R - I| is " + format_number(error));
+    const std::string reason = error <= kLargestNormError ? "this one is a reflection"
+                                                          : "|R'R - I| is " + format_number(error);
+    throw ParseError(where, text_from(where), "expected a rotation matrix, " + reason);
   }
   if (error > kPrintedRounding) {
-    report_.add_repair(options_, {"rotation matrix orthonormalised", where, "",
+    report_.add_repair(options_, {"rotation matrix orthonormalised", where, text_from(where),
                                   "matrix is a rotation only up to " + format_number(error) +
                                       "; replaced by the nearest one"});
   } else if (error > kUnitSquaredNorm) {

@@ -32,6 +32,7 @@ class PoseFields {
   void finish();
 
  private:
+  std::string text_from(const SourceLocation& where) const;
   Eigen::Quaterniond nearest_rotation(const Eigen::Matrix3d& matrix, const SourceLocation& where);
 
   TextReader& reader_;

@@ -194,7 +194,9 @@ class Reader {
     if (named_) constraint.information = inverse_covariance(constraint.information);
     if (is_positive_semidefinite(constraint.information)) return;
     if (!reordered(constraint, entries, order, column)) {
-      draft.indefinite.push_back({draft.constraints.size() - 1, column});
+      const bool kept = draft.indefinite.size() < ReadReport::kKeptPerKind;
+      draft.indefinite.push_back(
+          {draft.constraints.size() - 1, column, kept ? std::string(text_.text_from(column)) : ""});
     }
   }
 
@@ -209,7 +211,7 @@ class Reader {
       if (!is_positive_semidefinite(by_rows)) return false;
       file_.report.add_repair(options_, {"information reordered",
                                          {text_.path(), text_.line_number(), column},
-                                         "",
+                                         std::string(text_.text_from(column)),
                                          "information is not positive semi-definite in TORO's "
                                          "order of entries; read by rows"});
       constraint.information = by_rows;
@@ -229,8 +231,11 @@ class Reader {
     fields_.finish();
     if (planar_.empty() && spatial_.empty()) {
       const std::string start = report.lines == 0 ? "the file is empty" : "no vertex and no edge";
-      throw ParseError({report.path, 0, 0}, "",
-                       start + "; expected a pose graph in g2o or TORO format");
+      const bool unknown = !report.diagnostics.empty();
+      throw ParseError(
+          unknown ? report.diagnostics.front().where : SourceLocation{report.path, 0, 0},
+          unknown ? report.diagnostics.front().token : "",
+          start + "; expected a pose graph in g2o, TORO or PyFG format");
     }
     const bool toro = counts_[static_cast<std::size_t>(Tag::vertex2)] +
                           counts_[static_cast<std::size_t>(Tag::vertex3)] +

@@ -1,4 +1,4 @@
-#include <cmath>
+#include <cctype>
 #include <string>
 #include <utility>
 
@@ -17,7 +17,7 @@ class Reader {
 
   AnyTrajectory run() {
     text_.set_separator(',');
-    if (format_ == FileFormat::planar) return rows<Pose2>();
+    if (format_ == FileFormat::planar || format_ == FileFormat::points) return rows<Pose2>();
     return rows<Pose3>();
   }
 
@@ -27,9 +27,10 @@ class Reader {
     Trajectory<Pose> trajectory;
     while (next_row()) {
       if (trajectory.poses.empty()) stamped_ = first_row_has_stamp();
+      if (format_ == FileFormat::points && text_.word() != "point2") text_.fail("expected point2");
       if (stamped_) add_stamp(trajectory.timestamps);
       if constexpr (Pose::kDim == 2) {
-        trajectory.poses.push_back(fields_.planar());
+        trajectory.poses.push_back(format_ == FileFormat::points ? point() : fields_.planar());
       } else {
         trajectory.poses.push_back(spatial_pose());
       }
@@ -44,7 +45,8 @@ class Reader {
   bool next_row() {
     while (text_.next_line()) {
       if (text_.at_line_end() || text_.line().starts_with('#')) continue;
-      const bool names = rows_ == 0 && std::isalpha(static_cast<unsigned char>(text_.line()[0]));
+      const bool names = rows_ == 0 && format_ != FileFormat::points &&
+                         std::isalpha(static_cast<unsigned char>(text_.line()[0])) != 0;
       ++rows_;
       if (!names) return true;
     }
@@ -69,6 +71,18 @@ class Reader {
                         "time stamp is not later than the one before"});
     }
     stamps.push_back(stamp);
+  }
+
+  // x y, then a covariance.
+  Pose2 point() {
+    if (report_.notes["heading not known"]++ == 0) {
+      report_.diagnostics.push_back({"heading not known", text_.location(), "",
+                                     "positions without headings; headings are set to 0"});
+    }
+    const double x = text_.number("x");
+    const double y = text_.number("y");
+    while (!text_.at_line_end()) text_.number("a covariance");
+    return {x, y, 0.0};
   }
 
   Pose3 spatial_pose() {

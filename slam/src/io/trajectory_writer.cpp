@@ -118,8 +118,9 @@ void check_stamps(const AnyTrajectory& any) {
 }  // namespace
 
 void write_trajectory(const std::string& path, const AnyTrajectory& trajectory, FileFormat format) {
-  if (content_of(format) != FileContent::trajectory) {
-    throw InvalidArgument("format", "not a trajectory format: " + std::string(enum_name(format)));
+  if (content_of(format) != FileContent::trajectory || format == FileFormat::points) {
+    throw InvalidArgument("format",
+                          "trajectories are not written as " + std::string(enum_name(format)));
   }
   check_stamps(trajectory);
   OutputFile file(path);

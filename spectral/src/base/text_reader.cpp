@@ -78,8 +78,12 @@ TextReader::TextReader(const std::string& path) : path_(path == "-" ? "<stdin>" 
     int code = Z_OK;
     const char* problem = gzerror(file.get(), &code);
     if (count < 0 || (count == 0 && code != Z_OK && code != Z_STREAM_END)) {
-      throw FileError(name, std::string("cannot be read: ") +
-                                (code == Z_ERRNO ? std::strerror(errno) : problem));
+      std::string_view reason = code == Z_ERRNO ? std::strerror(errno) : problem;
+      // zlib puts the path in front of its own messages.
+      if (const auto colon = reason.find(": "); colon != reason.npos) {
+        reason.remove_prefix(colon + 2);
+      }
+      throw FileError(name, "cannot be read: " + std::string(reason));
     }
     return static_cast<std::size_t>(count);
   };
@@ -201,6 +205,11 @@ void TextReader::expect_line_end() {
     word();
     fail("expected the end of the line");
   }
+}
+
+std::string_view TextReader::text_from(std::uint64_t column) const {
+  const char* first = line_begin_ + std::min<std::size_t>(column - 1, token_end_ - line_begin_);
+  return {first, static_cast<std::size_t>(token_end_ - first)};
 }
 
 SourceLocation TextReader::location() const {

@@ -185,7 +185,7 @@ TEST(ReadPoseGraph, RepairsAnglesAndQuaternionsAndCounts) {
   EXPECT_THAT(file.report.notes, ElementsAre(Pair("quaternion rounded", 1)));
   expect_round_trip(file.graph);
   EXPECT_EQ(error_of("VERTEX_SE3:QUAT 0 0 0 0 0 0 0 0.5\n"),
-            "f.g2o:1:25: expected a unit quaternion, its norm is 0.5");
+            "f.g2o:1:25: expected a unit quaternion, its norm is 0.5 (got '0 0 0 0.5')");
 }
 
 TEST(ReadPoseGraph, ReplacesIndefiniteInformationByTheMedianOfItsKind) {
@@ -203,11 +203,11 @@ TEST(ReadPoseGraph, ReplacesIndefiniteInformationByTheMedianOfItsKind) {
   EXPECT_THAT(file.report.repairs, ElementsAre(Pair("information replaced", 2)));
   EXPECT_EQ(to_string(file.report.diagnostics[0]),
             "f.g2o:4:20: information matrix of this odometry edge is not positive semi-definite; "
-            "replaced by the median, from line 3");
+            "replaced by the median, from line 3 (got '1 2 0 1 0 1')");
   EXPECT_THAT(error_of(text, true), testing::StartsWith("f.g2o:4:20: "));
   EXPECT_EQ(error_of("EDGE_SE2 0 1 1 0 0 -1 0 0 1 0 1\n"),
             "f.g2o:1:20: information matrix is not positive semi-definite, and no edge has one "
-            "that could stand in");
+            "that could stand in (got '-1 0 0 1 0 1')");
 }
 
 TEST(ReadPoseGraph, SingularInformationIsLeftAlone) {
@@ -298,9 +298,10 @@ TEST(ReadPoseGraph, KeysOf64Bits) {
 }
 
 TEST(ReadPoseGraph, LocatesErrors) {
-  EXPECT_EQ(error_of(""), "f.g2o: the file is empty; expected a pose graph in g2o or TORO format");
+  EXPECT_EQ(error_of(""),
+            "f.g2o: the file is empty; expected a pose graph in g2o, TORO or PyFG format");
   EXPECT_EQ(error_of("# nothing\n\n"),
-            "f.g2o: no vertex and no edge; expected a pose graph in g2o or TORO format");
+            "f.g2o: no vertex and no edge; expected a pose graph in g2o, TORO or PyFG format");
   EXPECT_EQ(error_of("EDGE_SE2 0 1 1 0 0 1 0 0 1 0\n"),
             "f.g2o:1:29: expected an information entry, found the end of the line");
   EXPECT_EQ(error_of("VERTEX_SE2 0 0 0 0\nEDGE_SE2 0 1 1 nan 0 1 0 0 1 0 1\n"),

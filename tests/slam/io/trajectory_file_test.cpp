@@ -105,7 +105,8 @@ TEST(ReadTrajectory, LocatesErrors) {
   EXPECT_EQ(error_of("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1 7\n"),
             "f:2:17: expected the end of the line (got '7')");
   EXPECT_EQ(error_of("1 0 0 1 0 1 0 2 0 0 -1 3\n"),
-            "f:1:1: expected a rotation matrix, |R'R - I| is 0");
+            "f:1:1: expected a rotation matrix, this one is a reflection (got '1 0 0 1 0 1 0 2 0 0 "
+            "-1 3')");
 }
 
 TEST(ReadTrajectory, NotesStampsThatDoNotIncrease) {

@@ -34,4 +34,10 @@ RangeFile read_ranges(TextReader& reader, const ReadOptions& options = {});
 /// @throws FileError if the file cannot be written.
 void write_range_csv(const std::string& path, const RangeNetwork& network);
 
+/// Writes PyFG: a VERTEX_XY or VERTEX_XYZ line for every node whose position is
+/// known and an EDGE_RANGE line for every range. Names that do not start with a
+/// letter get the prefix X.
+/// @throws FileError if the file cannot be written.
+void write_pyfg(const std::string& path, const RangeNetwork& network);
+
 }  // namespace isotherm::geometry

@@ -78,6 +78,9 @@ class TextReader {
   /// @throws ParseError if a token is left on the line.
   void expect_line_end();
 
+  /// The text of the line from `column` to the end of the last token read.
+  std::string_view text_from(std::uint64_t column) const;
+
   /// Where the last token read stands.
   SourceLocation location() const;
 

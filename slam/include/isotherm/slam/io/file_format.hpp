@@ -16,12 +16,16 @@ enum class FileFormat {
   tum,
   kitti,
   euroc,
-  planar,  ///< rows of time x y theta
-  edges,   ///< rows of from to [weight]
+  planar,     ///< rows of time x y theta
+  points,     ///< libRSF's `point2` lines: positions without headings
+  ranges,     ///< rows of from,to,range[,sigma]
+  librsf,     ///< libRSF's `range2` lines
+  intervals,  ///< rows of i j lower upper
+  edges,      ///< rows of from to [weight]
   matrix_market,
 };
 
-constexpr std::array<EnumName<FileFormat>, 10> enum_names(FileFormat) {
+constexpr std::array<EnumName<FileFormat>, 14> enum_names(FileFormat) {
   return {{{FileFormat::unknown, "unknown"},
            {FileFormat::g2o, "g2o"},
            {FileFormat::toro, "toro"},
@@ -30,6 +34,10 @@ constexpr std::array<EnumName<FileFormat>, 10> enum_names(FileFormat) {
            {FileFormat::kitti, "kitti"},
            {FileFormat::euroc, "euroc"},
            {FileFormat::planar, "planar"},
+           {FileFormat::points, "points"},
+           {FileFormat::ranges, "ranges"},
+           {FileFormat::librsf, "librsf"},
+           {FileFormat::intervals, "intervals"},
            {FileFormat::edges, "edges"},
            {FileFormat::matrix_market, "matrix-market"}}};
 }
@@ -43,5 +51,8 @@ FileContent content_of(FileFormat format);
 /// Tells the format by the first records of the input, which is not consumed.
 /// The name of the file plays no part.
 FileFormat detect_format(TextReader& reader);
+
+/// The same. @throws ParseError if the input is empty or in no known format.
+FileFormat require_format(TextReader& reader);
 
 }  // namespace isotherm::slam

@@ -54,4 +54,8 @@ void write_g2o(const std::string& path, const AnyPoseGraph& graph);
 /// The same, with the other lines of the file at the end.
 void write_g2o(const std::string& path, const PoseGraphFile& file);
 
+/// Writes TORO: VERTEX2 and EDGE2, or VERTEX3 and EDGE3 with Euler angles. The
+/// format has no FIX lines. Errors as in write_g2o.
+void write_toro(const std::string& path, const AnyPoseGraph& graph);
+
 }  // namespace isotherm::slam

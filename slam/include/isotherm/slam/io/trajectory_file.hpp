@@ -17,8 +17,9 @@ struct TrajectoryFile {
 
 /// Reads a trajectory, telling the format by its content: TUM, KITTI (with or
 /// without a leading time stamp), EuRoC, rows of `time x y theta` separated by
-/// blanks or commas, or a pose graph, of which the vertices are taken (or, if it
-/// has none, the chain of its odometry).
+/// blanks or commas, libRSF's `point2` lines (headings are then 0, which is
+/// noted), or a pose graph, of which the vertices are taken (or, if it has none,
+/// the chain of its odometry).
 /// @throws FileError if the file cannot be read, ParseError if it is malformed,
 ///   empty, of no such format, or needs a repair and `options.strict` is set.
 TrajectoryFile read_trajectory(const std::string& path, const ReadOptions& options = {});
