@@ -14,11 +14,13 @@ namespace {
 using spectral::EdgeVerdicts;
 using spectral::Verdict;
 
+constexpr double kChi2Significance = 0.01;
+
 template <class Pose>
 PruneResult prune_by_consensus(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                                const PruneOptions& options) {
   ConsensusOptions own = options.consensus;
-  own.significance = options.significance;
+  if (options.significance > 0.0) own.significance = options.significance;
   own.threads = options.threads;
   own.progress = options.progress;
   PruneResult result;
@@ -51,7 +53,9 @@ PruneResult prune_by_heat(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
 template <class Pose>
 PruneResult prune_by_chi2(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                           const PruneOptions& options) {
-  const double gate = chi_squared_quantile(1.0 - options.significance, Pose::kDof);
+  const double significance =
+      options.significance > 0.0 ? options.significance : kChi2Significance;
+  const double gate = chi_squared_quantile(1.0 - significance, Pose::kDof);
   const auto checks = odometry_chi2(graph, roles);
   PruneResult result;
   result.verdicts = candidate_verdicts(graph, roles);
@@ -89,8 +93,8 @@ PruneResult run_method(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
 }  // namespace
 
 void PruneOptions::validate() const {
-  if (!(significance > 0.0 && significance < 1.0)) {
-    throw InvalidArgument("significance", "must be in (0, 1)");
+  if (!(significance >= 0.0 && significance < 1.0)) {
+    throw InvalidArgument("significance", "must be in (0, 1), or 0 for the default");
   }
   if (threads < 0) throw InvalidArgument("threads", "must not be negative");
   heat.validate();

@@ -67,7 +67,7 @@ TEST(ApplyVerdicts, LeavesOutPrunedAndByDefaultAmbiguous) {
 }
 
 TEST(PruneOptions, RejectsSignificanceOutOfRange) {
-  for (const double significance : {0.0, 1.0, -0.1}) {
+  for (const double significance : {1.0, 1.5, -0.1}) {
     EXPECT_THROW(PruneOptions{.significance = significance}.validate(), InvalidArgument);
   }
 }

@@ -31,8 +31,9 @@ constexpr std::array<EnumName<PruneMethod>, 3> enum_names(PruneMethod) {
 struct PruneOptions {
   PruneMethod method = PruneMethod::consensus;
   /// Probability with which a correct loop may be pruned, where a method tests
-  /// against a distribution; in (0, 1).
-  double significance = 0.0001;
+  /// against a distribution; in (0, 1), or 0 for the method's own default: 0.0001
+  /// for consensus, whose predictions sharpen as it goes, 0.01 for chi2.
+  double significance = 0.0;
   HeatPruneOptions heat;
   ConsensusOptions consensus;
   ProgressCallback progress = {};
@@ -47,7 +48,8 @@ requires std::same_as<std::remove_const_t<Options>, PruneOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("method", options.method, "how false loop closures are found");
   visit("significance", options.significance,
-        "probability with which a correct loop may be pruned (consensus, chi2)");
+        "probability with which a correct loop may be pruned; 0: 0.0001 for consensus, 0.01 for "
+        "chi2");
   visit_fields(options.consensus, visit);
   visit_fields(options.heat, visit);
 }
