@@ -22,12 +22,20 @@ $isotherm corrupt "$out/clean.g2o" --ground-truth "$out/truth.g2o" --count 400 -
 echo
 echo "== Prune =="
 $isotherm prune "$out/corrupted.g2o" -o "$out/pruned.g2o" \
-  --verdicts "$out/verdicts.csv" --json "$out/result.json" -v
+  --verdicts "$out/verdicts.csv" --json "$out/result.json"
+
+echo
+echo "== Optimise what is left, and for comparison what came in =="
+$isotherm optimize "$out/pruned.g2o" -o "$out/map.g2o"
+$isotherm optimize "$out/corrupted.g2o" -o "$out/ruined.g2o"
 
 echo
 echo "== Against the truth =="
-$isotherm info "$out/pruned.g2o"
 $isotherm eval loops "$out/verdicts.csv" "$out/labels.csv"
+echo "trajectory error of the pruned map:"
+$isotherm eval ate "$out/map.g2o" "$out/truth.g2o" --align se
+echo "without pruning:"
+$isotherm eval ate "$out/ruined.g2o" "$out/truth.g2o" --align se
 
 echo
 echo "== Written to $out =="
