@@ -114,6 +114,12 @@ TEST_F(Info, PyfgHasRangesAndPoses) {
   EXPECT_EQ(json["pose_graph"]["consecutive_edges"], 9657);
 }
 
+TEST_F(Info, DistanceIntervals) {
+  ISOTHERM_REAL_DATA_OR_SKIP(path, "snl/mdjeep_sensorSet1/sensor056.nmr");
+  EXPECT_EQ(info(path.string())["format"], "intervals");
+  EXPECT_EQ(info(path.string())["ranges"], 191);
+}
+
 TEST_F(Info, TellsEveryContentAndListsWhatIsOdd) {
   write_text(folder / "t", "1 0 0 0 0 0 0 1\n2 3 4 0 0 0 0 1\n");
   EXPECT_EQ(info("t")["path_length_m"], 5.0);

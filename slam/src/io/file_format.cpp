@@ -102,7 +102,7 @@ bool is_interval(const std::vector<std::string_view>& tokens) {
   double number = 0.0;
   return tokens.size() >= 4 && parse_unsigned(tokens[0], i) && parse_unsigned(tokens[1], j) &&
          parse_number(tokens[2], lower) && parse_number(tokens[3], upper) && i > 0 && j > 0 &&
-         i != j && lower > 0.0 && lower <= upper &&
+         i != j && lower >= 0.0 && lower <= upper && upper > 0.0 &&
          (tokens.size() == 4 || !parse_number(tokens[4], number));
 }
 

@@ -1,4 +1,5 @@
 #include <cctype>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -17,7 +18,8 @@ class Reader {
 
   AnyTrajectory run() {
     text_.set_separator(',');
-    if (format_ == FileFormat::planar || format_ == FileFormat::points) return rows<Pose2>();
+    if (format_ == FileFormat::points) return positions();
+    if (format_ == FileFormat::planar) return rows<Pose2>();
     return rows<Pose3>();
   }
 
@@ -27,10 +29,9 @@ class Reader {
     Trajectory<Pose> trajectory;
     while (next_row()) {
       if (trajectory.poses.empty()) stamped_ = first_row_has_stamp();
-      if (format_ == FileFormat::points && text_.word() != "point2") text_.fail("expected point2");
       if (stamped_) add_stamp(trajectory.timestamps);
       if constexpr (Pose::kDim == 2) {
-        trajectory.poses.push_back(format_ == FileFormat::points ? point() : fields_.planar());
+        trajectory.poses.push_back(fields_.planar());
       } else {
         trajectory.poses.push_back(spatial_pose());
       }
@@ -39,6 +40,45 @@ class Reader {
     fields_.finish();
     report_.records["pose"] = trajectory.poses.size();
     return trajectory;
+  }
+
+  // libRSF: `point2 time x y covariance...` and, for some or all times, `angle
+  // time theta variance`.
+  Trajectory<Pose2> positions() {
+    Trajectory<Pose2> trajectory;
+    std::map<double, double> headings;
+    while (next_row()) {
+      const auto tag = text_.word();
+      if (tag == "point2") {
+        add_stamp(trajectory.timestamps);
+        const double x = text_.number("x");
+        trajectory.poses.emplace_back(x, text_.number("y"), 0.0);
+      } else if (tag == "angle") {
+        const double stamp = text_.number("a time stamp");
+        headings[stamp] = fields_.angle();
+      } else {
+        text_.fail("expected point2 or angle");
+      }
+      while (!text_.at_line_end()) text_.number("a covariance");
+    }
+    fields_.finish();
+    report_.records["pose"] = trajectory.poses.size();
+    set_headings(headings, trajectory);
+    return trajectory;
+  }
+
+  void set_headings(const std::map<double, double>& headings, Trajectory<Pose2>& trajectory) {
+    for (std::size_t k = 0; k < trajectory.poses.size(); ++k) {
+      const auto found = headings.find(trajectory.timestamps[k]);
+      if (found != headings.end()) {
+        trajectory.poses[k] = {trajectory.poses[k].translation(), found->second};
+      } else {
+        report_.add_note({"heading not known",
+                          {text_.path(), 0, 0},
+                          format_number(trajectory.timestamps[k]),
+                          "no heading for this time; set to 0"});
+      }
+    }
   }
 
   // Goes to the next line that is neither empty, a comment nor column names.
@@ -71,18 +111,6 @@ class Reader {
                         "time stamp is not later than the one before"});
     }
     stamps.push_back(stamp);
-  }
-
-  // x y, then a covariance.
-  Pose2 point() {
-    if (report_.notes["heading not known"]++ == 0) {
-      report_.diagnostics.push_back({"heading not known", text_.location(), "",
-                                     "positions without headings; headings are set to 0"});
-    }
-    const double x = text_.number("x");
-    const double y = text_.number("y");
-    while (!text_.at_line_end()) text_.number("a covariance");
-    return {x, y, 0.0};
   }
 
   Pose3 spatial_pose() {

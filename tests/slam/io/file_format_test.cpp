@@ -31,7 +31,7 @@ TEST(DetectFormat, ByTheFirstRecordThatTells) {
   EXPECT_EQ(detected("point2 0 1 2 0 0 0 0\n"), "points");
   EXPECT_EQ(detected("from,to,range\n"), "ranges");
   EXPECT_EQ(detected("range2 0 1 2\n"), "librsf");
-  EXPECT_EQ(detected("1 2 0.5 0.6\n1 3 0.5 0.5\n"), "intervals");
+  EXPECT_EQ(detected("1 2 0 0.6\n1 3 0.5 0.5\n"), "intervals");
   EXPECT_EQ(detected("1 2 0.5 0.6\n2 3.5 0.5 0.7\n"), "planar");
   EXPECT_EQ(detected("0 1\n"), "edges");
   EXPECT_EQ(detected("from,to\n0,1\n"), "edges");

@@ -78,6 +78,16 @@ TEST(ReadTrajectory, PlanarRowsWithBlanksOrCommasAndNames) {
   }
 }
 
+TEST(ReadTrajectory, PositionsTakeTheirHeadingsByTime) {
+  const auto file = parse("point2 0 1 2 0 0 0 0\npoint2 1 3 4 0 0 0 0\nangle 1 0.5 0\n");
+  EXPECT_EQ(file.report.format, "points");
+  const auto& trajectory = std::get<Trajectory<Pose2>>(file.trajectory);
+  EXPECT_THAT(trajectory.timestamps, ElementsAre(0, 1));
+  EXPECT_EQ(trajectory.poses[1].translation(), Eigen::Vector2d(3, 4));
+  EXPECT_EQ(trajectory.poses[1].angle(), 0.5);
+  EXPECT_THAT(file.report.notes, ElementsAre(Pair("heading not known", 1)));
+}
+
 TEST(ReadTrajectory, VerticesOfAPoseGraphOrItsOdometry) {
   const auto vertices = parse("VERTEX_SE2 0 1 2 0\nVERTEX_SE2 1 3 4 0\n");
   EXPECT_EQ(std::get<Trajectory<Pose2>>(vertices.trajectory).poses[1].translation().x(), 3);
@@ -183,6 +193,8 @@ INSTANTIATE_TEST_SUITE_P(
                     RealFile{"paper/b25b/Bicocca25b_GT_GPS.g2o", "g2o", 6580},
                     RealFile{"posegraph2d/ring/groundTruth/poses.txt", "planar", 434},
                     RealFile{"posegraph2d/ringCity/groundTruth/poses.txt", "planar", 2361},
+                    RealFile{"placerec/tuc_corridor/Corridor_GT.txt", "points", 11346},
+                    RealFile{"snl/labyrinth_uwb/Indoor_UWB_GT.txt", "points", 233},
                     RealFile{"posegraph2d/city10000/city10000_groundtruth.txt", "toro", 10000},
                     RealFile{"posegraph3d/sphere2500/sphere2500_groundtruth.txt", "toro", 2500}));
 

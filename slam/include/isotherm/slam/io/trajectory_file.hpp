@@ -17,8 +17,8 @@ struct TrajectoryFile {
 
 /// Reads a trajectory, telling the format by its content: TUM, KITTI (with or
 /// without a leading time stamp), EuRoC, rows of `time x y theta` separated by
-/// blanks or commas, libRSF's `point2` lines (headings are then 0, which is
-/// noted), or a pose graph, of which the vertices are taken (or, if it has none,
+/// blanks or commas, libRSF's `point2` and `angle` lines (headings not given
+/// are 0, which is noted), or a pose graph, of which the vertices are taken (or, if it has none,
 /// the chain of its odometry).
 /// @throws FileError if the file cannot be read, ParseError if it is malformed,
 ///   empty, of no such format, or needs a repair and `options.strict` is set.
