@@ -220,7 +220,9 @@ std::vector<Pose> initial_poses(const PoseGraph<Pose>& graph, const EdgeRoles& r
   if (!graph.poses.empty() && graph.poses.size() != graph.ids.size()) {
     throw InvalidArgument("poses", "must have one entry a vertex, or none");
   }
-  std::vector<bool> preferred(graph.constraints.size(), method == Initialization::spanning_tree);
+  const bool any_step =
+      method == Initialization::spanning_tree || method == Initialization::automatic;
+  std::vector<bool> preferred(graph.constraints.size(), any_step);
   for (const Index k : roles.odometry) preferred[k] = true;
   switch (method) {
     case Initialization::file:
@@ -230,6 +232,7 @@ std::vector<Pose> initial_poses(const PoseGraph<Pose>& graph, const EdgeRoles& r
       return graph.poses;
     case Initialization::chordal:
       return chordal_poses(graph, follow_tree(graph, preferred));
+    case Initialization::automatic:
     case Initialization::odometry:
     case Initialization::spanning_tree:
       break;

@@ -31,14 +31,6 @@ Eigen::VectorXd damping_scale(const BlockCholesky& hessian) {
   return diagonal.cwiseMax(largest > 0.0 ? 1e-12 * largest : 1.0);
 }
 
-void report(const MinimizeOptions& options, int iteration) {
-  if (!options.progress) return;
-  if (!options.progress({"optimize", static_cast<std::uint64_t>(iteration),
-                         static_cast<std::uint64_t>(options.max_iterations)})) {
-    throw Cancelled();
-  }
-}
-
 template <class Pose>
 class Minimizer {
  public:
@@ -84,7 +76,7 @@ class Minimizer {
     double best_cost = cost_;
     auto status = OptimizeStatus::iteration_limit;
     while (summary_.iterations < options_.max_iterations) {
-      report(options_, summary_.iterations++);
+      report_progress(options_, summary_.iterations++);
       const Eigen::VectorXd step = gauss_newton_step(equations_);
       const double promised = -step.dot(equations_.gradient());
       equations_.retract(step, poses_);
@@ -115,7 +107,7 @@ class Minimizer {
     double growth = 2.0;
     Eigen::VectorXd scale = damping_scale(equations_.hessian());
     while (summary_.iterations < options_.max_iterations) {
-      report(options_, summary_.iterations++);
+      report_progress(options_, summary_.iterations++);
       double gain = -1.0;  // achieved decrease over promised decrease
       if (equations_.hessian().factorise(damping * scale)) {
         const Eigen::VectorXd step = equations_.hessian().solve(-equations_.gradient());
@@ -161,6 +153,14 @@ class Minimizer {
 };
 
 }  // namespace
+
+void report_progress(const MinimizeOptions& options, int iteration) {
+  if (!options.progress) return;
+  if (!options.progress({"optimize", static_cast<std::uint64_t>(iteration),
+                         static_cast<std::uint64_t>(options.max_iterations)})) {
+    throw Cancelled();
+  }
+}
 
 template <class Pose>
 Eigen::VectorXd gauss_newton_step(NormalEquations<Pose>& equations) {

@@ -25,6 +25,9 @@ struct MinimizeSummary {
   double final_cost = 0.0;
 };
 
+/// Tells the callback. @throws Cancelled if it asks to stop.
+void report_progress(const MinimizeOptions& options, int iteration);
+
 /// Moves `poses` to a minimum of the summed edge costs, reusing the symbolic
 /// factorisation of `equations`.
 template <class Pose>

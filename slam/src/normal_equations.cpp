@@ -94,6 +94,27 @@ void NormalEquations<Pose>::add_edge(const Edge& edge, const typename Pose::Matr
 }
 
 template <class Pose>
+Eigen::VectorXd NormalEquations<Pose>::slopes(const std::vector<Pose>& poses,
+                                              const Eigen::VectorXd& step) const {
+  const auto part = [&](Index vertex) -> typename Pose::Tangent {
+    const Index variable = gauge_.variable[vertex];
+    if (variable < 0) return Pose::Tangent::Zero();
+    return step.template segment<Pose::kDof>(Eigen::Index{variable} * Pose::kDof);
+  };
+  Eigen::VectorXd result(constraint_count());
+  for (Index k = 0; k < constraint_count(); ++k) {
+    const Edge& edge = edges_[k];
+    const Pose T_from_to = poses[edge.from].inverse() * poses[edge.to];
+    const typename Pose::Tangent r = (edge.T_to_from * T_from_to).log();
+    const typename Pose::Tangent moved =
+        Pose::right_jacobian_inverse(r) *
+        (part(edge.to) - T_from_to.inverse().adjoint() * part(edge.from));
+    result[k] = r.dot(edge.information * moved);
+  }
+  return result;
+}
+
+template <class Pose>
 void NormalEquations<Pose>::retract(const Eigen::VectorXd& step, std::vector<Pose>& poses) const {
   for (std::size_t v = 0; v < poses.size(); ++v) {
     const Index variable = gauge_.variable[v];

@@ -54,6 +54,9 @@ class NormalEquations {
   /// Half the derivative of the cost by the free poses.
   const Eigen::VectorXd& gradient() const noexcept { return gradient_; }
 
+  /// Derivative of half of every chi-squared along `step`, from `poses`. O(m).
+  Eigen::VectorXd slopes(const std::vector<Pose>& poses, const Eigen::VectorXd& step) const;
+
   /// Moves every free pose by its part of `step`: T exp(xi).
   void retract(const Eigen::VectorXd& step, std::vector<Pose>& poses) const;
 

@@ -5,6 +5,7 @@
 
 #include "isotherm/base/error.hpp"
 #include "minimize.hpp"
+#include "robust_minimize.hpp"
 
 namespace isotherm::slam {
 namespace {
@@ -15,10 +16,63 @@ void require_positive(const char* field, double value) {
   }
 }
 
+bool levels_off(RobustKernel kernel) {
+  return kernel == RobustKernel::cauchy || kernel == RobustKernel::dcs ||
+         kernel == RobustKernel::sc;
+}
+
+// What the automatic choices stand for.
+OptimizeOptions resolve(OptimizeOptions options, int dof) {
+  if (options.kernel_width == 0.0) {
+    options.kernel_width = default_kernel_width(options.kernel, dof);
+  }
+  if (options.algorithm == OptimizeAlgorithm::automatic) {
+    options.algorithm = levels_off(options.kernel) ? OptimizeAlgorithm::gauss_newton
+                                                   : OptimizeAlgorithm::levenberg_marquardt;
+  }
+  if (options.initialization == Initialization::automatic) {
+    options.initialization = options.kernel == RobustKernel::none ? Initialization::spanning_tree
+                                                                  : Initialization::odometry;
+  }
+  return options;
+}
+
+// Runs the method of the kernel; leaves the weights it ended with.
+template <class Pose>
+MinimizeSummary minimize_by_kernel(NormalEquations<Pose>& equations,
+                                   const std::vector<bool>& robust, const OptimizeOptions& options,
+                                   std::vector<Pose>& poses, Eigen::VectorXd& weights) {
+  const MinimizeOptions minimize_options{options.algorithm, options.max_iterations,
+                                         options.cost_tolerance, options.progress};
+  switch (options.kernel) {
+    case RobustKernel::sc:
+      return minimize_switchable(equations, robust, options.kernel_width, minimize_options, poses,
+                                 weights);
+    case RobustKernel::gnc:
+    case RobustKernel::gnc_gm:
+      return minimize_graduated(equations, robust, options.kernel_width,
+                                options.kernel == RobustKernel::gnc, minimize_options, poses,
+                                weights);
+    default:
+      break;
+  }
+  const EdgeCost edge_cost = [&](Index k, double chi2) {
+    const auto kernel = robust[k] ? options.kernel : RobustKernel::none;
+    return evaluate_kernel(kernel, options.kernel_width, chi2);
+  };
+  const auto summary = minimize(equations, edge_cost, minimize_options, poses);
+  const Eigen::VectorXd chi2 = equations.chi2(poses);
+  weights.resize(chi2.size());
+  for (Index k = 0; k < chi2.size(); ++k) weights[k] = edge_cost(k, chi2[k]).weight;
+  return summary;
+}
+
 }  // namespace
 
 void OptimizeOptions::validate() const {
-  require_positive("kernel_width", kernel_width);
+  if (!(kernel_width >= 0.0) || !std::isfinite(kernel_width)) {
+    throw InvalidArgument("kernel_width", "must be a positive number, or 0 for the default");
+  }
   require_positive("cost_tolerance", cost_tolerance);
   if (max_iterations < 0) throw InvalidArgument("max_iterations", "must not be negative");
 }
@@ -30,35 +84,24 @@ OptimizeResult<Pose> optimize(const PoseGraph<Pose>& graph, const OptimizeOption
 
 template <class Pose>
 OptimizeResult<Pose> optimize(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                              const OptimizeOptions& options) {
-  options.validate();
+                              const OptimizeOptions& given) {
+  given.validate();
   const auto start = std::chrono::steady_clock::now();
+  const OptimizeOptions options = resolve(given, Pose::kDof);
   const PreparedGraph<Pose> prepared = prepare(graph);
-
   std::vector<bool> robust(graph.constraints.size(), options.kernel_on_odometry);
   for (const Index k : roles.candidates) robust[k] = true;
-  const EdgeCost edge_cost = [&](Index k, double chi2) {
-    const auto kernel = robust[k] ? options.kernel : RobustKernel::none;
-    return evaluate_kernel(kernel, options.kernel_width, chi2);
-  };
 
   OptimizeResult<Pose> result;
   result.poses = initial_poses(prepared.graph, roles, options.initialization);
   NormalEquations<Pose> equations(prepared.graph);
-  const auto summary = minimize(
-      equations, edge_cost,
-      {options.algorithm, options.max_iterations, options.cost_tolerance, options.progress},
-      result.poses);
+  const auto summary = minimize_by_kernel(equations, robust, options, result.poses, result.weight);
 
   result.status = summary.status;
   result.iterations = summary.iterations;
   result.initial_cost = summary.initial_cost;
   result.final_cost = summary.final_cost;
   result.chi2 = equations.chi2(result.poses);
-  result.weight.resize(result.chi2.size());
-  for (Index k = 0; k < result.chi2.size(); ++k) {
-    result.weight[k] = edge_cost(k, result.chi2[k]).weight;
-  }
   result.components = equations.gauge().component_count;
   result.held = equations.gauge().held;
   result.projected_information = prepared.projected_information;

@@ -1,12 +1,14 @@
 #include "isotherm/slam/prune.hpp"
 
 #include <chrono>
+#include <cmath>
 #include <string>
 
 #include "candidate_verdicts.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/statistics.hpp"
 #include "isotherm/slam/odometry_chi2.hpp"
+#include "isotherm/slam/optimize.hpp"
 
 namespace isotherm::slam {
 namespace {
@@ -76,6 +78,64 @@ PruneResult prune_by_chi2(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
   return result;
 }
 
+RobustKernel kernel_of(PruneMethod method) {
+  switch (method) {
+    case PruneMethod::sc:
+      return RobustKernel::sc;
+    case PruneMethod::dcs:
+      return RobustKernel::dcs;
+    case PruneMethod::cauchy:
+      return RobustKernel::cauchy;
+    case PruneMethod::gnc:
+      return RobustKernel::gnc;
+    default:
+      return RobustKernel::none;
+  }
+}
+
+template <class Pose>
+PruneResult prune_by_kernel(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                            const PruneOptions& options) {
+  const RobustKernel kernel = kernel_of(options.method);
+  const double width =
+      options.kernel_width > 0.0 ? options.kernel_width : default_kernel_width(kernel, Pose::kDof);
+  const auto optimized = optimize(
+      graph, roles, {.kernel = kernel, .kernel_width = width, .progress = options.progress});
+  const double threshold = kernel_threshold(kernel, width);
+  PruneResult result;
+  result.verdicts = candidate_verdicts(graph, roles);
+  for (auto& verdict : result.verdicts) {
+    verdict.score = optimized.chi2[verdict.edge];
+    verdict.threshold = threshold;
+    verdict.verdict = verdict.score > threshold ? Verdict::prune : Verdict::keep;
+    verdict.stage = enum_name(kernel);
+  }
+  if (optimized.status != OptimizeStatus::converged) {
+    result.warnings.push_back("the optimisation ended without converging");
+  }
+  return result;
+}
+
+template <class Pose>
+PruneResult prune_by_rrr(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                         const PruneOptions& options) {
+  PruneResult result;
+  result.verdicts = rrr(graph, roles, options.rrr, options.progress);
+  return result;
+}
+
+template <class Pose>
+PruneResult prune_by_pcm(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                         const PruneOptions& options) {
+  auto found = pcm(graph, roles, options.pcm, options.progress);
+  PruneResult result;
+  result.verdicts = std::move(found.verdicts);
+  if (!found.proven) {
+    result.warnings.push_back("the consistent set is the largest found, not proven the largest");
+  }
+  return result;
+}
+
 template <class Pose>
 PruneResult run_method(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                        const PruneOptions& options) {
@@ -86,6 +146,15 @@ PruneResult run_method(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
       return prune_by_heat(graph, roles, options);
     case PruneMethod::chi2:
       return prune_by_chi2(graph, roles, options);
+    case PruneMethod::rrr:
+      return prune_by_rrr(graph, roles, options);
+    case PruneMethod::pcm:
+      return prune_by_pcm(graph, roles, options);
+    case PruneMethod::sc:
+    case PruneMethod::dcs:
+    case PruneMethod::cauchy:
+    case PruneMethod::gnc:
+      return prune_by_kernel(graph, roles, options);
   }
   throw InvalidArgument("method", "unknown");
 }
@@ -99,6 +168,11 @@ void PruneOptions::validate() const {
   if (threads < 0) throw InvalidArgument("threads", "must not be negative");
   heat.validate();
   consensus.validate();
+  rrr.validate();
+  pcm.validate();
+  if (!(kernel_width >= 0.0) || !std::isfinite(kernel_width)) {
+    throw InvalidArgument("kernel_width", "must be a positive number, or 0 for the default");
+  }
 }
 
 template <class Pose>

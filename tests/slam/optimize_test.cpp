@@ -322,7 +322,7 @@ TYPED_TEST(Optimize, RejectsWhatItCannotRead) {
   graph = made.graph;
   graph.fixed = {-1};
   EXPECT_THROW(optimize(graph), InvalidArgument);
-  EXPECT_THROW(optimize(made.graph, {.kernel_width = 0.0}), InvalidArgument);
+  EXPECT_THROW(optimize(made.graph, {.kernel_width = -1.0}), InvalidArgument);
   EXPECT_THROW(optimize(made.graph, {.max_iterations = -1}), InvalidArgument);
   EXPECT_THROW(optimize(made.graph, {.cost_tolerance = std::nan("")}), InvalidArgument);
   EXPECT_THROW(optimize(made.graph, {.initialization = Initialization::file}), InvalidArgument);

@@ -10,14 +10,16 @@ namespace isotherm::slam {
 
 /// Where an optimisation starts.
 enum class Initialization {
+  automatic,      ///< odometry with a robust kernel, else the spanning tree
   odometry,       ///< chained odometry; parts it does not join hang on other constraints
   spanning_tree,  ///< shortest paths, in constraints, from the held vertices
   chordal,        ///< linear least squares for rotations, then for translations
   file,           ///< the graph's own poses
 };
 
-constexpr std::array<EnumName<Initialization>, 4> enum_names(Initialization) {
-  return {{{Initialization::odometry, "odometry"},
+constexpr std::array<EnumName<Initialization>, 5> enum_names(Initialization) {
+  return {{{Initialization::automatic, "automatic"},
+           {Initialization::odometry, "odometry"},
            {Initialization::spanning_tree, "spanning_tree"},
            {Initialization::chordal, "chordal"},
            {Initialization::file, "file"}}};

@@ -17,6 +17,7 @@ namespace isotherm::slam {
 
 /// How a step is chosen from the normal equations.
 enum class OptimizeAlgorithm {
+  automatic,  ///< Gauss-Newton for the kernels cauchy, dcs and sc, else Levenberg-Marquardt
   /// Full steps, downhill or not. From odometry it reaches optima that damped
   /// steps miss, and kernels that level off (DCS) need it; it may diverge.
   gauss_newton,
@@ -24,20 +25,21 @@ enum class OptimizeAlgorithm {
   levenberg_marquardt,
 };
 
-constexpr std::array<EnumName<OptimizeAlgorithm>, 2> enum_names(OptimizeAlgorithm) {
-  return {{{OptimizeAlgorithm::gauss_newton, "gauss_newton"},
+constexpr std::array<EnumName<OptimizeAlgorithm>, 3> enum_names(OptimizeAlgorithm) {
+  return {{{OptimizeAlgorithm::automatic, "automatic"},
+           {OptimizeAlgorithm::gauss_newton, "gauss_newton"},
            {OptimizeAlgorithm::levenberg_marquardt, "levenberg_marquardt"}}};
 }
 
 struct OptimizeOptions {
   RobustKernel kernel = RobustKernel::none;
-  double kernel_width = 1.0;  ///< see evaluate_kernel(); > 0
+  double kernel_width = 0.0;  ///< see evaluate_kernel(); 0: default_kernel_width()
   /// Apply the kernel to odometry too. The robust methods trust odometry.
   bool kernel_on_odometry = false;
   /// The spanning tree starts closest on clean graphs; against false loops use
   /// odometry, which no false loop can bend.
-  Initialization initialization = Initialization::spanning_tree;
-  OptimizeAlgorithm algorithm = OptimizeAlgorithm::levenberg_marquardt;
+  Initialization initialization = Initialization::automatic;
+  OptimizeAlgorithm algorithm = OptimizeAlgorithm::automatic;
   int max_iterations = 100;  ///< accepted and rejected steps, >= 0
   /// Converged where what is left to gain, extrapolated from the last two steps,
   /// is less than this fraction of the cost; > 0.
@@ -52,7 +54,7 @@ requires std::same_as<std::remove_const_t<Options>, OptimizeOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("kernel", options.kernel, "robust kernel on loop closures");
   visit("kernel_width", options.kernel_width,
-        "width: in sqrt(chi2) for huber and cauchy, in chi2 for dcs");
+        "in sqrt(chi2) for huber and cauchy, else in chi2; 0: the kernel's own default");
   visit("kernel_on_odometry", options.kernel_on_odometry, "apply the kernel to odometry too");
   visit("initialization", options.initialization, "where to start");
   visit("algorithm", options.algorithm, "how steps are chosen");

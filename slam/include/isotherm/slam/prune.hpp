@@ -10,7 +10,9 @@
 #include "isotherm/base/progress.hpp"
 #include "isotherm/slam/consensus.hpp"
 #include "isotherm/slam/heat_prune.hpp"
+#include "isotherm/slam/pcm.hpp"
 #include "isotherm/slam/pose_graph.hpp"
+#include "isotherm/slam/rrr.hpp"
 #include "isotherm/spectral/edge_verdicts.hpp"
 
 namespace isotherm::slam {
@@ -20,12 +22,25 @@ enum class PruneMethod {
   consensus,  ///< forward consensus, see consensus.hpp
   heat,       ///< multi-scale heat-kernel pruning, see heat_prune.hpp
   chi2,       ///< chi-squared of each loop against odometry alone, see odometry_chi2.hpp
+  rrr,        ///< consistent clusters of loops, see rrr.hpp
+  pcm,        ///< largest pairwise consistent set, see pcm.hpp
+  // What a robust optimisation gives less than half its weight, see robust_kernel.hpp.
+  sc,
+  dcs,
+  cauchy,
+  gnc,
 };
 
-constexpr std::array<EnumName<PruneMethod>, 3> enum_names(PruneMethod) {
+constexpr std::array<EnumName<PruneMethod>, 9> enum_names(PruneMethod) {
   return {{{PruneMethod::consensus, "consensus"},
            {PruneMethod::heat, "heat"},
-           {PruneMethod::chi2, "chi2"}}};
+           {PruneMethod::chi2, "chi2"},
+           {PruneMethod::rrr, "rrr"},
+           {PruneMethod::pcm, "pcm"},
+           {PruneMethod::sc, "sc"},
+           {PruneMethod::dcs, "dcs"},
+           {PruneMethod::cauchy, "cauchy"},
+           {PruneMethod::gnc, "gnc"}}};
 }
 
 struct PruneOptions {
@@ -36,6 +51,10 @@ struct PruneOptions {
   double significance = 0.0;
   HeatPruneOptions heat;
   ConsensusOptions consensus;
+  RrrOptions rrr;
+  PcmOptions pcm;
+  /// Width of the kernel of sc, dcs, cauchy and gnc; 0: default_kernel_width().
+  double kernel_width = 0.0;
   ProgressCallback progress = {};
   int threads = 0;  ///< 0: all cores; results do not depend on it
 
@@ -52,6 +71,10 @@ void visit_fields(Options& options, Visitor&& visit) {
         "chi2");
   visit_fields(options.consensus, visit);
   visit_fields(options.heat, visit);
+  visit_fields(options.rrr, visit);
+  visit_fields(options.pcm, visit);
+  visit("kernel_width", options.kernel_width,
+        "width of the kernel (sc, dcs, cauchy, gnc); 0: its own default");
 }
 
 struct PruneResult {

@@ -13,13 +13,21 @@ enum class RobustKernel {
   cauchy,  ///< w^2 log(1 + x / w^2)
   dcs,     ///< dynamic covariance scaling: P. Agarwal et al., "Robust Map
            ///< Optimization using Dynamic Covariance Scaling", ICRA 2013, eq. 15-16
+  sc,      ///< switchable constraints: N. Suenderhauf, P. Protzel, "Switchable
+           ///< Constraints for Robust Pose Graph SLAM", IROS 2012; w x / (w + x)
+  gnc,     ///< truncated least squares min(x, w) by graduated non-convexity: H. Yang
+           ///< et al., "Graduated Non-Convexity for Robust Spatial Perception", RA-L 2020
+  gnc_gm,  ///< Geman-McClure w x / (w + x) by graduated non-convexity
 };
 
-constexpr std::array<EnumName<RobustKernel>, 4> enum_names(RobustKernel) {
+constexpr std::array<EnumName<RobustKernel>, 7> enum_names(RobustKernel) {
   return {{{RobustKernel::none, "none"},
            {RobustKernel::huber, "huber"},
            {RobustKernel::cauchy, "cauchy"},
-           {RobustKernel::dcs, "dcs"}}};
+           {RobustKernel::dcs, "dcs"},
+           {RobustKernel::sc, "sc"},
+           {RobustKernel::gnc, "gnc"},
+           {RobustKernel::gnc_gm, "gnc_gm"}}};
 }
 
 /// Cost rho(chi2) and its derivative, the weight of the constraint.
@@ -28,8 +36,20 @@ struct KernelValue {
   double weight = 1.0;
 };
 
+/// The width a kernel has in its paper: 1 (for Huber 1.345, 95 % efficiency), and
+/// for graduated non-convexity the 0.99 quantile of chi-squared with `dof`
+/// degrees of freedom, GTSAM's choice as well.
+double default_kernel_width(RobustKernel kernel, int dof);
+
+/// Chi-squared above which a constraint counts for less than half of what it
+/// measures: the switch of SC and the scale of DCS fall below 0.5 there, the
+/// weights of the other kernels too. Infinity without a kernel.
+double kernel_threshold(RobustKernel kernel, double width);
+
 /// The kernel's value at `chi2` >= 0 for a width > 0. Huber and Cauchy measure
-/// the width in units of sqrt(chi2), DCS (its Phi) in units of chi2.
+/// the width in units of sqrt(chi2); DCS (its Phi), SC (the inverse variance of a
+/// switch's prior) and GNC (the largest chi-squared of a good constraint) in units
+/// of chi2.
 ///
 /// DCS scales a constraint's information by s^2, s = min(1, 2 Phi / (Phi + chi2)),
 /// as published. The cost whose derivative that is, 3 Phi - 4 Phi^2 / (Phi + chi2)
