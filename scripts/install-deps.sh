@@ -13,6 +13,8 @@ packages=(
   libopenblas0-serial
   # tests
   libgtest-dev libgmock-dev librapidcheck-dev
+  # benchmarks
+  libbenchmark-dev
 )
 
 usage() {

@@ -1,24 +1,37 @@
 #include "isotherm/spectral/laplacian.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 namespace isotherm::spectral {
 namespace {
 
-using Triplet = Eigen::Triplet<double, Index>;
-
 SparseMatrix combinatorial_matrix(const WeightedGraph& graph, const Eigen::VectorXd& degrees) {
-  std::vector<Triplet> entries;
-  entries.reserve(2 * graph.edges().size() + static_cast<std::size_t>(degrees.size()));
-  for (Index v = 0; v < graph.vertex_count(); ++v) entries.emplace_back(v, v, degrees[v]);
-  for (const auto& edge : graph.edges()) {
-    if (edge.from == edge.to) continue;
-    entries.emplace_back(edge.from, edge.to, -edge.weight);
-    entries.emplace_back(edge.to, edge.from, -edge.weight);
-  }
+  struct Entry {
+    Index row;
+    double value;
+  };
   SparseMatrix matrix(graph.vertex_count(), graph.vertex_count());
-  matrix.setFromTriplets(entries.begin(), entries.end());
+  matrix.reserve(static_cast<Index>(2 * graph.edges().size()) + graph.vertex_count());
+  std::vector<Entry> column;
+  for (Index v = 0; v < graph.vertex_count(); ++v) {
+    column.assign(1, {v, degrees[v]});
+    for (const auto& neighbour : graph.neighbours(v)) {
+      if (neighbour.vertex == v) continue;
+      column.push_back({neighbour.vertex, -graph.edge(neighbour.edge).weight});
+    }
+    std::stable_sort(column.begin(), column.end(),
+                     [](const Entry& a, const Entry& b) { return a.row < b.row; });
+    matrix.startVec(v);
+    for (std::size_t k = 0; k < column.size();) {
+      const Index row = column[k].row;
+      double sum = 0.0;  // of parallel edges, in order of id
+      for (; k < column.size() && column[k].row == row; ++k) sum += column[k].value;
+      matrix.insertBack(row, v) = sum;
+    }
+  }
+  matrix.finalize();
   return matrix;
 }
 
@@ -59,7 +72,7 @@ SparseMatrix Laplacian::null_space() const {
   Eigen::VectorXd squared = Eigen::VectorXd::Zero(components_.count);
   for (Index v = 0; v < size(); ++v) squared[components_.label[v]] += entry_of(v) * entry_of(v);
 
-  std::vector<Triplet> entries;
+  std::vector<Eigen::Triplet<double, Index>> entries;
   entries.reserve(static_cast<std::size_t>(size()));
   for (Index v = 0; v < size(); ++v) {
     const Index component = components_.label[v];

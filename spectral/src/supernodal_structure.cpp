@@ -47,7 +47,8 @@ void copy_analysis(const SparseMatrix& lower, SupernodalStructure& structure) {
 
 void link_fronts(SupernodalStructure& structure) {
   const Index count = structure.supernode_count();
-  std::vector<Index> supernode_of(structure.size);
+  auto& supernode_of = structure.supernode_of;
+  supernode_of.resize(structure.size);
   for (Index s = 0; s < count; ++s) {
     for (Index c = structure.first_column[s]; c < structure.first_column[s + 1]; ++c) {
       supernode_of[c] = s;
@@ -138,9 +139,7 @@ FrontQueries locate(const SupernodalStructure& structure, std::span<const Vertex
     if (high >= 0) high = structure.position_of[high];
     const bool swapped = high >= 0 && high < low;
     if (swapped) std::swap(low, high);
-    const auto above =
-        std::upper_bound(structure.first_column.begin(), structure.first_column.end(), low);
-    const auto s = static_cast<Index>(above - structure.first_column.begin()) - 1;
+    const Index s = structure.supernode_of[low];
     const Index second = high < 0 ? kNone : front_place(s, high);
     located.push_back({s, {static_cast<Index>(k), front_place(s, low), second, swapped}});
   }

@@ -20,6 +20,7 @@ struct SupernodalStructure {
   Index size = 0;                  ///< of the matrix
   std::vector<Index> position_of;  ///< row of the matrix -> row after reordering
   std::vector<Index> first_column;
+  std::vector<Index> supernode_of;  ///< column -> supernode
   std::vector<Index> row_start;
   std::vector<Index> rows;
   std::vector<Index> place_in_parent;  ///< like `rows`; meaningless for own columns
