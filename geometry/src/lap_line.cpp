@@ -1,17 +1,13 @@
 #include "isotherm/geometry/lap_line.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <string>
-#include <thread>
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
 #include <Eigen/Geometry>
 
 #include "isotherm/base/error.hpp"
+#include "isotherm/base/parallel.hpp"
 #include "perpendicular.hpp"
 
 namespace isotherm::geometry {
@@ -209,26 +205,9 @@ std::vector<CurveDescriptor<Dim>> lap_lines(const Polyline<Dim>& polyline,
                                             const std::vector<int>& vertices,
                                             const LapLineOptions& options, int threads,
                                             const ProgressCallback& progress) {
-  namespace tbb = oneapi::tbb;
-  if (threads < 0) throw InvalidArgument("threads", "must not be negative");
   std::vector<CurveDescriptor<Dim>> descriptors(vertices.size());
-  std::atomic<std::uint64_t> done = 0;
-  std::atomic<bool> cancelled = false;
-  const auto caller = std::this_thread::get_id();
-  const auto describe = [&](const tbb::blocked_range<std::size_t>& range) {
-    for (auto k = range.begin(); k != range.end() && !cancelled; ++k) {
-      descriptors[k] = lap_line(polyline, vertices[k], options);
-    }
-    done += range.size();
-    if (progress && std::this_thread::get_id() == caller &&
-        !progress({"curve descriptors", done, vertices.size()})) {
-      cancelled = true;
-    }
-  };
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
-  arena.execute(
-      [&] { tbb::parallel_for(tbb::blocked_range<std::size_t>(0, vertices.size()), describe); });
-  if (cancelled) throw Cancelled();
+  parallel_for(static_cast<std::int64_t>(vertices.size()), threads, progress, "curve descriptors",
+               [&](std::int64_t k) { descriptors[k] = lap_line(polyline, vertices[k], options); });
   return descriptors;
 }
 

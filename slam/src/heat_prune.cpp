@@ -27,7 +27,9 @@ template <class Pose>
 class Pruner {
  public:
   Pruner(const PoseGraph<Pose>& graph, const EdgeRoles& roles, const HeatPruneOptions& options)
-      : roles_(roles), options_(options), induced_(induce(graph, roles, options.induction)) {
+      : roles_(roles),
+        options_(options),
+        induced_(induce(graph, roles, options.induction, options.threads, options.progress)) {
     keep_.assign(induced_.graph.edge_count(), true);
     result_.verdicts = candidate_verdicts(graph, roles);
     for (std::size_t c = 0; c < roles_.candidates.size(); ++c) {
@@ -166,6 +168,7 @@ void HeatPruneOptions::validate() const {
 HeatPruneOptions datta2016() {
   HeatPruneOptions options;
   options.threshold = ThresholdRule::mean_sigma;
+  options.induction.curve.comparison = CurveComparison::lap_line;
   return options;
 }
 

@@ -16,13 +16,19 @@ void require_positive(const char* name, double value) {
 
 template <class Pose>
 std::vector<double> candidate_weights(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                                      const InductionOptions& options) {
+                                      const InductionOptions& options, int threads,
+                                      const ProgressCallback& progress) {
+  const bool both = options.init == Initialisation::both;
   std::vector<double> weights(roles.candidates.size(), options.loop_weight);
-  if (options.init == Initialisation::chi2) {
+  if (both || options.init == Initialisation::chi2) {
     const auto checks = odometry_chi2(graph, roles);
     for (std::size_t c = 0; c < weights.size(); ++c) {
-      weights[c] = options.loop_weight / (1.0 + checks[c].chi2 / Pose::kDof);
+      weights[c] /= 1.0 + checks[c].chi2 / Pose::kDof;
     }
+  }
+  if (both || options.init == Initialisation::lap_line) {
+    const auto evidence = curve_evidence(graph, roles, options.curve, threads, progress);
+    for (std::size_t c = 0; c < weights.size(); ++c) weights[c] *= 1.0 - evidence[c].score;
   }
   return weights;
 }
@@ -32,14 +38,16 @@ std::vector<double> candidate_weights(const PoseGraph<Pose>& graph, const EdgeRo
 void InductionOptions::validate() const {
   require_positive("odometry_weight", odometry_weight);
   require_positive("loop_weight", loop_weight);
+  curve.validate();
 }
 
 template <class Pose>
 InducedGraph induce(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                    const InductionOptions& options) {
+                    const InductionOptions& options, int threads,
+                    const ProgressCallback& progress) {
   options.validate();
   std::vector<double> weight(graph.constraints.size(), options.odometry_weight);
-  const auto candidate_weight = candidate_weights(graph, roles, options);
+  const auto candidate_weight = candidate_weights(graph, roles, options, threads, progress);
   for (std::size_t c = 0; c < candidate_weight.size(); ++c) {
     weight[roles.candidates[c]] = candidate_weight[c];
   }
@@ -57,7 +65,9 @@ InducedGraph induce(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
   return induced;
 }
 
-template InducedGraph induce(const PoseGraph<Pose2>&, const EdgeRoles&, const InductionOptions&);
-template InducedGraph induce(const PoseGraph<Pose3>&, const EdgeRoles&, const InductionOptions&);
+template InducedGraph induce(const PoseGraph<Pose2>&, const EdgeRoles&, const InductionOptions&,
+                             int, const ProgressCallback&);
+template InducedGraph induce(const PoseGraph<Pose3>&, const EdgeRoles&, const InductionOptions&,
+                             int, const ProgressCallback&);
 
 }  // namespace isotherm::slam

@@ -7,6 +7,7 @@
 #include "candidate_verdicts.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/statistics.hpp"
+#include "isotherm/slam/curve_evidence.hpp"
 #include "isotherm/slam/odometry_chi2.hpp"
 #include "isotherm/slam/optimize.hpp"
 
@@ -137,6 +138,30 @@ PruneResult prune_by_pcm(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
 }
 
 template <class Pose>
+PruneResult prune_by_curves(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                            const PruneOptions& options) {
+  const auto& curve = options.heat.induction.curve;
+  const auto evidence = curve_evidence(graph, roles, curve, options.threads, options.progress);
+  PruneResult result;
+  result.verdicts = candidate_verdicts(graph, roles);
+  std::size_t silent = 0;
+  for (std::size_t c = 0; c < evidence.size(); ++c) {
+    auto& verdict = result.verdicts[c];
+    const bool unlike = evidence[c].compared && evidence[c].score > options.curve_threshold;
+    verdict.score = evidence[c].score;
+    verdict.threshold = options.curve_threshold;
+    verdict.verdict = unlike ? Verdict::prune : Verdict::keep;
+    verdict.stage = evidence[c].compared ? std::string(enum_name(curve.comparison)) : "short-path";
+    if (!evidence[c].compared) ++silent;
+  }
+  if (silent > 0) {
+    result.warnings.push_back(std::to_string(silent) +
+                              " loops end on paths too short to compare, so they are kept");
+  }
+  return result;
+}
+
+template <class Pose>
 PruneResult run_method(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                        const PruneOptions& options) {
   switch (options.method) {
@@ -155,6 +180,8 @@ PruneResult run_method(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
     case PruneMethod::cauchy:
     case PruneMethod::gnc:
       return prune_by_kernel(graph, roles, options);
+    case PruneMethod::lap_line:
+      return prune_by_curves(graph, roles, options);
   }
   throw InvalidArgument("method", "unknown");
 }
@@ -166,6 +193,9 @@ void PruneOptions::validate() const {
     throw InvalidArgument("significance", "must be in (0, 1), or 0 for the default");
   }
   if (threads < 0) throw InvalidArgument("threads", "must not be negative");
+  if (!(curve_threshold >= 0.0 && curve_threshold <= 1.0)) {
+    throw InvalidArgument("curve_threshold", "must be in [0, 1]");
+  }
   heat.validate();
   consensus.validate();
   rrr.validate();

@@ -54,6 +54,25 @@ TEST(Induce, UniformWeights) {
   EXPECT_EQ(induced.graph.edge(0).weight, 1.0);
 }
 
+TEST(Induce, CurvesWeightLoopsAloneOrTogetherWithChi2) {
+  const auto graph = chain_with_loops();
+  const auto roles = edge_roles(graph);
+  InductionOptions options{.init = Initialisation::lap_line, .loop_weight = 0.5};
+  options.curve.windows = {2.0};
+  options.curve.step = 0.25;
+  const auto checks = odometry_chi2(graph, roles);
+  const auto evidence = curve_evidence(graph, roles, options.curve);
+  const auto by_curve = induce(graph, roles, options);
+  options.init = Initialisation::both;
+  const auto by_both = induce(graph, roles, options);
+  for (std::size_t c = 0; c < roles.candidates.size(); ++c) {
+    const auto edge = by_curve.constraint_edge[roles.candidates[c]];
+    EXPECT_EQ(by_curve.graph.edge(edge).weight, 0.5 * (1.0 - evidence[c].score));
+    EXPECT_DOUBLE_EQ(by_both.graph.edge(edge).weight,
+                     0.5 / (1.0 + checks[c].chi2 / 3.0) * (1.0 - evidence[c].score));
+  }
+}
+
 TEST(Induce, WeightsThatUnderflowHaveNoEdge) {
   auto graph = chain_with_loops();
   const double tiny = std::numeric_limits<double>::denorm_min();

@@ -56,11 +56,12 @@ void visit_fields(Options& options, Visitor&& visit) {
   visit("odometry_weight", options.induction.odometry_weight, "heat: weight of odometry");
   visit("loop_weight", options.induction.loop_weight, "heat: largest weight of a loop");
   visit("tolerance", options.tolerance, "heat: error allowed in a heat distance");
+  visit_fields(options.induction.curve, visit);
 }
 
 /// What the paper states: Figure 5's scales, mean + konst * sigma, weights from
-/// chi-squared. It gives konst only as "0 to 4, depending on the scale"; 1 is used
-/// at every scale here.
+/// chi-squared (or, with init lap_line, from descriptors as it defines them). It gives
+/// konst only as "0 to 4, depending on the scale"; 1 is used at every scale here.
 HeatPruneOptions datta2016();
 
 /// What happened at one scale.

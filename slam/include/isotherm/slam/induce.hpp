@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "isotherm/base/options.hpp"
+#include "isotherm/base/progress.hpp"
+#include "isotherm/slam/curve_evidence.hpp"
 #include "isotherm/slam/pose_graph.hpp"
 #include "isotherm/spectral/weighted_graph.hpp"
 
@@ -12,12 +14,17 @@ namespace isotherm::slam {
 
 /// How candidates are weighted before any spectral analysis.
 enum class Initialisation {
-  chi2,     ///< 1 / (1 + chi2 / dof) with chi2 against odometry alone
-  uniform,  ///< every candidate alike
+  chi2,      ///< 1 / (1 + chi2 / dof) with chi2 against odometry alone
+  lap_line,  ///< 1 - score of the curves at its ends, see curve_evidence.hpp
+  both,      ///< the product of these two
+  uniform,   ///< every candidate alike
 };
 
-constexpr std::array<EnumName<Initialisation>, 2> enum_names(Initialisation) {
-  return {{{Initialisation::chi2, "chi2"}, {Initialisation::uniform, "uniform"}}};
+constexpr std::array<EnumName<Initialisation>, 4> enum_names(Initialisation) {
+  return {{{Initialisation::chi2, "chi2"},
+           {Initialisation::lap_line, "lap-line"},
+           {Initialisation::both, "both"},
+           {Initialisation::uniform, "uniform"}}};
 }
 
 /// Graph induction (S. Datta et al., section V-A).
@@ -25,6 +32,7 @@ struct InductionOptions {
   Initialisation init = Initialisation::chi2;  ///< weights of the candidates
   double odometry_weight = 1.0;                ///< affinity of odometry, > 0
   double loop_weight = 1.0;                    ///< largest affinity of a candidate, > 0
+  CurveEvidenceOptions curve;                  ///< for lap_line and both
 
   void validate() const;
 };
@@ -37,9 +45,12 @@ struct InducedGraph {
 };
 
 /// Odometry gets odometry_weight, candidates a weight in (0, loop_weight].
-/// A candidate whose weight underflows to 0 has no edge. O(m log n).
+/// A candidate whose weight underflows to 0 has no edge. O(m log n), and the cost of
+/// curve_evidence() where it is used; only that uses `threads` and `progress`.
+/// @throws InvalidArgument, Cancelled
 template <class Pose>
 InducedGraph induce(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                    const InductionOptions& options = {});
+                    const InductionOptions& options = {}, int threads = 0,
+                    const ProgressCallback& progress = {});
 
 }  // namespace isotherm::slam

@@ -22,6 +22,7 @@ enum class PruneMethod {
   consensus,  ///< forward consensus, see consensus.hpp
   heat,       ///< multi-scale heat-kernel pruning, see heat_prune.hpp
   chi2,       ///< chi-squared of each loop against odometry alone, see odometry_chi2.hpp
+  lap_line,   ///< how unlike the paths at its ends are, see curve_evidence.hpp
   rrr,        ///< consistent clusters of loops, see rrr.hpp
   pcm,        ///< largest pairwise consistent set, see pcm.hpp
   // What a robust optimisation gives less than half its weight, see robust_kernel.hpp.
@@ -31,10 +32,11 @@ enum class PruneMethod {
   gnc,
 };
 
-constexpr std::array<EnumName<PruneMethod>, 9> enum_names(PruneMethod) {
+constexpr std::array<EnumName<PruneMethod>, 10> enum_names(PruneMethod) {
   return {{{PruneMethod::consensus, "consensus"},
            {PruneMethod::heat, "heat"},
            {PruneMethod::chi2, "chi2"},
+           {PruneMethod::lap_line, "lap-line"},
            {PruneMethod::rrr, "rrr"},
            {PruneMethod::pcm, "pcm"},
            {PruneMethod::sc, "sc"},
@@ -55,6 +57,9 @@ struct PruneOptions {
   PcmOptions pcm;
   /// Width of the kernel of sc, dcs, cauchy and gnc; 0: default_kernel_width().
   double kernel_width = 0.0;
+  /// Method lap_line, which compares curves by heat.induction.curve: the score
+  /// above which a loop is pruned; in [0, 1].
+  double curve_threshold = 0.5;
   ProgressCallback progress = {};
   int threads = 0;  ///< 0: all cores; results do not depend on it
 
@@ -75,6 +80,8 @@ void visit_fields(Options& options, Visitor&& visit) {
   visit_fields(options.pcm, visit);
   visit("kernel_width", options.kernel_width,
         "width of the kernel (sc, dcs, cauchy, gnc); 0: its own default");
+  visit("curve_threshold", options.curve_threshold,
+        "lap-line: score of the paths above which a loop is pruned");
 }
 
 struct PruneResult {

@@ -1,0 +1,38 @@
+#include "isotherm/base/parallel.hpp"
+
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "isotherm/base/error.hpp"
+
+namespace isotherm {
+namespace {
+
+TEST(ParallelFor, VisitsEveryIndexOnce) {
+  for (const int threads : {0, 1, 3}) {
+    std::vector<int> visits(1000, 0);
+    parallel_for(1000, threads, {}, "test", [&](std::int64_t k) { ++visits[k]; });
+    EXPECT_THAT(visits, testing::Each(1));
+  }
+  parallel_for(0, 1, {}, "test", [](std::int64_t) { FAIL(); });
+}
+
+TEST(ParallelFor, CancelsWhenProgressSaysSo) {
+  const auto stop = [](const Progress& progress) {
+    EXPECT_EQ(progress.stage, "test");
+    EXPECT_EQ(progress.total, 5000U);
+    return false;
+  };
+  EXPECT_THROW(parallel_for(5000, 1, stop, "test", [](std::int64_t) {}), Cancelled);
+}
+
+TEST(ParallelFor, PassesOnWhatTheBodyThrows) {
+  const auto fail = [](std::int64_t) { throw NumericalError("test", "always"); };
+  EXPECT_THROW(parallel_for(10, 2, {}, "test", fail), NumericalError);
+  EXPECT_THROW(parallel_for(10, -1, {}, "test", [](std::int64_t) {}), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace isotherm
