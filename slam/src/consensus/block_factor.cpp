@@ -119,10 +119,10 @@ template <int Dof>
 bool BlockFactor<Dof>::factorise_column(Index column) {
   const Eigen::LLT<Block> pivot(diagonal_[column]);
   if (pivot.info() != Eigen::Success) return false;
-  diagonal_[column] = pivot.matrixL();
+  diagonal_[column] = pivot.matrixL().solve(Block::Identity());
+  const Block right = diagonal_[column].transpose();
   for (std::size_t at = starts_[column]; at < starts_[column + 1]; ++at) {
-    const Block row = off_diagonal_[at];
-    off_diagonal_[at] = pivot.matrixL().solve(row.transpose()).transpose();
+    off_diagonal_[at] = off_diagonal_[at] * right;
   }
   return true;
 }
@@ -133,7 +133,7 @@ void BlockFactor<Dof>::solve(Eigen::VectorXd& x) const {
   Eigen::Matrix<double, Dof, Eigen::Dynamic> y(Dof, n);
   for (Index k = 0; k < n; ++k) y.col(k) = x.segment<Dof>(Eigen::Index{order_[k]} * Dof);
   for (Index k = 0; k < n; ++k) {
-    diagonal_[k].template triangularView<Eigen::Lower>().solveInPlace(y.col(k));
+    y.col(k) = diagonal_[k] * y.col(k);
     for (std::size_t at = starts_[k]; at < starts_[k + 1]; ++at) {
       y.col(rows_[at]).noalias() -= off_diagonal_[at] * y.col(k);
     }
@@ -142,7 +142,7 @@ void BlockFactor<Dof>::solve(Eigen::VectorXd& x) const {
     for (std::size_t at = starts_[k]; at < starts_[k + 1]; ++at) {
       y.col(k).noalias() -= off_diagonal_[at].transpose() * y.col(rows_[at]);
     }
-    diagonal_[k].transpose().template triangularView<Eigen::Upper>().solveInPlace(y.col(k));
+    y.col(k) = diagonal_[k].transpose() * y.col(k);
     x.segment<Dof>(Eigen::Index{order_[k]} * Dof) = y.col(k);
   }
 }
@@ -160,9 +160,8 @@ typename BlockFactor<Dof>::Block BlockFactor<Dof>::quadratic_form(Workspace& wor
   // Both paths ascend; after they meet they are one.
   while (first != root || second != root) {
     const Index column = std::min(first, second);
-    Block y = workspace[column];
+    const Block y = diagonal_[column] * workspace[column];
     workspace[column].setZero();
-    diagonal_[column].template triangularView<Eigen::Lower>().solveInPlace(y);
     form.noalias() += y.transpose() * y;
     for (std::size_t at = starts_[column]; at < starts_[column + 1]; ++at) {
       workspace[rows_[at]].noalias() -= off_diagonal_[at] * y;

@@ -78,7 +78,7 @@ class BlockFactor {
 
   std::vector<Index> order_;     // the block eliminated k-th
   std::vector<Index> position_;  // its inverse
-  // L by columns: diagonal blocks (lower triangles) apart from those below.
+  // L by columns: the inverses of the diagonal blocks, and the blocks below.
   std::vector<std::size_t> starts_;
   std::vector<Index> rows_;
   std::vector<Block> diagonal_;

@@ -9,7 +9,7 @@ namespace isotherm::slam::detail {
 namespace {
 
 // Steps below this many standard deviations of the links they move do not matter.
-constexpr double kSettled = 1e-2;
+constexpr double kSettled = 0.1;
 
 Index root_of(std::vector<Index>& parent, Index node) {
   while (parent[node] != node) node = parent[node] = parent[parent[node]];

@@ -19,7 +19,9 @@ using spectral::Verdict;
 
 constexpr int kStepsPerRound = 6;        // of Gauss-Newton
 constexpr int kMostDrops = 3;            // a loop dropped so often is not tried again
-constexpr int kMostCalibrations = 6;     // of the covariance scales
+constexpr int kCalibrations = 6;         // of the covariance scales, on proven loops
+constexpr int kLastCalibrations = 2;     // and with the likely ones
+constexpr int kMostDoublings = 4;        // of odometry's covariance, where it refutes every loop
 constexpr double kLargestRescale = 2.0;  // in one calibration
 constexpr double kWorthRescaling = 1.1;
 
@@ -49,11 +51,32 @@ Search<Pose>::Search(const ReducedGraph<Pose>& graph, const ConsensusOptions& op
 
 template <class Pose>
 void Search<Pose>::run(ConsensusResult& result) {
-  for (int calibration = 0;; ++calibration) {
-    accept_while_possible();
-    if (!options_.calibrate || calibration == kMostCalibrations || !calibrate()) break;
-  }
+  // The scales are learnt from proven loops first: those that are merely likely are
+  // the likelier, the wider the covariances, and would feed back.
+  accept_and_calibrate(kCalibrations);
+  take_likely_ = true;
+  accept_and_calibrate(kLastCalibrations);
   report(result);
+}
+
+template <class Pose>
+void Search<Pose>::accept_and_calibrate(int most_calibrations) {
+  accept_while_possible();
+  if (!options_.calibrate) return;
+  for (int k = 0; k < kMostDoublings && odometry_refutes_all(); ++k) {
+    rescale({2.0 * scale_.odometry, scale_.loops});
+    accept_while_possible();
+  }
+  for (int k = 0; k < most_calibrations && calibrate(); ++k) accept_while_possible();
+}
+
+// One statement of accuracy stands against all loops: it is doubted first.
+template <class Pose>
+bool Search<Pose>::odometry_refutes_all() const {
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    if (accepted_[k] || inside_gate(static_cast<Index>(k))) return false;
+  }
+  return true;
 }
 
 template <class Pose>
@@ -79,7 +102,7 @@ bool Search<Pose>::accept_next_batch() {
     rule = "cluster";
     batch = strongest_clusters();
   }
-  if (batch.empty()) {
+  if (batch.empty() && take_likely_) {
     rule = "prior";
     batch = likely_rest();
   }
@@ -399,20 +422,22 @@ bool Search<Pose>::calibrate() {
     return std::max(
         1.0, std::clamp(cost / freedom, present / kLargestRescale, present * kLargestRescale));
   };
-  const CovarianceScale previous = scale_;
-  scale_.loops = moved(scale_.loops, loop_cost, loop_redundancy);
-  scale_.odometry = moved(scale_.odometry, estimate_.odometry_cost(), redundancy - loop_redundancy);
+  const CovarianceScale next = {
+      moved(scale_.odometry, estimate_.odometry_cost(), redundancy - loop_redundancy),
+      moved(scale_.loops, loop_cost, loop_redundancy)};
+  const double loop_change = std::abs(std::log(next.loops / scale_.loops));
+  const double odometry_change = std::abs(std::log(next.odometry / scale_.odometry));
+  if (std::max(loop_change, odometry_change) < std::log(kWorthRescaling)) return false;
+  rescale(next);
+  return true;
+}
 
-  const double loop_change = std::abs(std::log(scale_.loops / previous.loops));
-  const double odometry_change = std::abs(std::log(scale_.odometry / previous.odometry));
-  if (std::max(loop_change, odometry_change) < std::log(kWorthRescaling)) {
-    scale_ = previous;
-    return false;
-  }
+template <class Pose>
+void Search<Pose>::rescale(const CovarianceScale& scale) {
+  scale_ = scale;
   for (auto& state : states_) state.drops = 0;
   forget_bounds();
   find_support();
-  return true;
 }
 
 template <class Pose>

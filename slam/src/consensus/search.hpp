@@ -37,6 +37,8 @@ class Search {
     Matrix covariance = Matrix::Zero();
     Evidence evidence;
   };
+  void accept_and_calibrate(int most_calibrations);
+  bool odometry_refutes_all() const;
   void accept_while_possible();
   bool accept_next_batch();
   bool readmit();
@@ -60,6 +62,7 @@ class Search {
   void learn_fractions();
   void accept(const Selection& batch, const char* rule);
   bool calibrate();
+  void rescale(const CovarianceScale& scale);
   void find_support();
   void report(ConsensusResult& result) const;
   bool inside_gate(Index loop) const { return states_[loop].evidence.chi2 <= gate_; }
@@ -77,6 +80,7 @@ class Search {
   std::vector<ConsensusRound> rounds_;
   double inlier_fraction_ = 0.5;
   double alike_fraction_ = 0.2;  // of false loops that agree with a neighbouring false loop
+  bool take_likely_ = false;     // accept unproven loops that are more likely true than not
   bool settled_ = true;
 };
 
