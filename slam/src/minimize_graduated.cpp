@@ -37,6 +37,14 @@ struct Surrogate {
   }
 };
 
+double largest_of(const Eigen::VectorXd& chi2, const std::vector<bool>& robust) {
+  double largest = 0.0;
+  for (Index k = 0; k < chi2.size(); ++k) {
+    if (robust[k]) largest = std::max(largest, chi2[k]);
+  }
+  return largest;
+}
+
 }  // namespace
 
 template <class Pose>
@@ -48,17 +56,17 @@ MinimizeSummary minimize_graduated(NormalEquations<Pose>& equations,
   const EdgeCost edge_cost = [&](Index k, double chi2) {
     return KernelValue{weights[k] * chi2, weights[k]};
   };
+  // The surrogate must be convex enough both for the start, where loops disagree
+  // most, and for the optimum with all of them.
   const std::vector<Pose> start = poses;
+  const double at_start = largest_of(equations.chi2(start), robust);
   MinimizeSummary total = minimize(equations, edge_cost, options, poses);
   Eigen::VectorXd chi2 = equations.chi2(poses);
-  double largest = 0.0;
-  for (Index k = 0; k < chi2.size(); ++k) {
-    if (robust[k]) largest = std::max(largest, chi2[k]);
-  }
-  if (largest <= width) return total;
+  const double with_all = largest_of(chi2, robust);
+  if (with_all <= width) return total;
 
   Surrogate surrogate{truncated, width, 0.0};
-  surrogate.start(largest);
+  surrogate.start(std::max(at_start, with_all));
   for (int round = 0; round < kMostRounds; ++round) {
     for (Index k = 0; k < chi2.size(); ++k) {
       if (robust[k]) weights[k] = surrogate.weight(chi2[k]);

@@ -43,7 +43,7 @@ double default_kernel_width(RobustKernel kernel, int dof) {
       return 1.345;
     case RobustKernel::gnc:
     case RobustKernel::gnc_gm:
-      return chi_squared_quantile(0.99, dof);
+      return chi_squared_quantile(0.999, dof);
     default:
       return 1.0;
   }

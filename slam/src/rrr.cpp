@@ -170,6 +170,13 @@ class Rrr {
     return sum;
   }
 
+  Consistency whole_graph(const std::vector<const Cluster*>& clusters,
+                          const std::vector<double>& chi2) const {
+    std::size_t constraints = roles_.odometry.size();
+    for (const Cluster* cluster : clusters) constraints += cluster->size();
+    return test(std::accumulate(chi2.begin(), chi2.end(), 0.0), constraints);
+  }
+
   // Algorithm 3: the largest part of `tried` that agrees with `good` and itself,
   // found by putting back the most inconsistent cluster, one at a time.
   std::vector<std::size_t> agree(const std::vector<Cluster>& clusters,
@@ -180,22 +187,15 @@ class Rrr {
       for (const std::size_t c : good) together.push_back(&clusters[c]);
       for (const std::size_t c : tried) together.push_back(&clusters[c]);
       const auto chi2 = chi2_with(together);
-      double loops_sum = 0.0;
-      std::size_t loops = 0;
-      for (const Cluster* cluster : together) {
-        loops_sum += sum_over(*cluster, chi2);
-        loops += cluster->size();
-      }
-      const Consistency all =
-          test(std::accumulate(chi2.begin(), chi2.end(), 0.0), roles_.odometry.size() + loops);
-      if (all.holds() && test(loops_sum, loops).holds()) return tried;
-      const auto inconsistency = [&](std::size_t c) {
-        return test(sum_over(clusters[c], chi2), clusters[c].size()).ratio();
+      const auto consistency = [&](std::size_t c) {
+        return test(sum_over(clusters[c], chi2), clusters[c].size());
       };
-      const auto worst = std::max_element(
-          tried.begin(), tried.end(),
-          [&](std::size_t a, std::size_t b) { return inconsistency(a) < inconsistency(b); });
-      const Consistency why = test(sum_over(clusters[*worst], chi2), clusters[*worst].size());
+      const auto worst =
+          std::max_element(tried.begin(), tried.end(), [&](std::size_t a, std::size_t b) {
+            return consistency(a).ratio() < consistency(b).ratio();
+          });
+      const Consistency why = consistency(*worst);
+      if (why.holds() && whole_graph(together, chi2).holds()) return tried;
       for (const Index candidate : clusters[*worst]) last_test(candidate, why);
       tried.erase(worst);
     }

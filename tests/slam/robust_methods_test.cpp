@@ -34,7 +34,7 @@ Poisoned<Pose> poisoned_graph(Random& random, int n, int loops, int false_loops)
     wrong.from = static_cast<Index>(random.index(static_cast<std::uint64_t>(n) / 2));
     wrong.to =
         wrong.from + 3 + static_cast<Index>(random.index(static_cast<std::uint64_t>(n) / 2 - 3));
-    wrong.T_from_to = Pose::exp(random_tangent<Pose>(random, 3.0));
+    wrong.T_from_to = Pose::exp(random_tangent<Pose>(random, 1.0));
     made.graph.constraints.push_back(wrong);
   }
   return made;

@@ -37,8 +37,8 @@ struct KernelValue {
 };
 
 /// The width a kernel has in its paper: 1 (for Huber 1.345, 95 % efficiency), and
-/// for graduated non-convexity the 0.99 quantile of chi-squared with `dof`
-/// degrees of freedom, GTSAM's choice as well.
+/// for graduated non-convexity the 0.999 quantile of chi-squared with `dof`
+/// degrees of freedom (GTSAM has 0.99, which costs one correct loop in a hundred).
 double default_kernel_width(RobustKernel kernel, int dof);
 
 /// Chi-squared above which a constraint counts for less than half of what it

@@ -46,9 +46,12 @@ std::vector<std::vector<Index>> cluster_loops(const PoseGraph<Pose>& graph, cons
 /// Within each cluster the loops that chi-squared rejects after optimising odometry
 /// with the cluster alone go ("intra-cluster": odometry is contracted to the ends
 /// of the loops, exact to first order), or the whole cluster ("cluster") if the sum
-/// over the graph exceeds the quantile for all its constraints. Then
-/// clusters are accepted together ("inter-cluster"); while a set fails, the most
-/// inconsistent cluster is put back, to be tried again as the accepted set grows.
+/// over the graph exceeds the quantile for all its constraints. Then clusters are
+/// accepted together ("inter-cluster"); while one of them, or the graph, fails its
+/// test, the most inconsistent cluster is put back, to be tried again as the accepted
+/// set grows. (The paper sums over all clusters at once, which lets a small false one
+/// pass among many good ones.)
+///
 /// A round tries the clusters with a loop that fits the current estimate; where
 /// drift lets none fit odometry, the first round tries all.
 /// The score is chi-squared where the loop was decided, the threshold its quantile;
