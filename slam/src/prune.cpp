@@ -56,8 +56,7 @@ PruneResult prune_by_heat(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
 template <class Pose>
 PruneResult prune_by_chi2(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                           const PruneOptions& options) {
-  const double significance =
-      options.significance > 0.0 ? options.significance : kChi2Significance;
+  const double significance = options.significance > 0.0 ? options.significance : kChi2Significance;
   const double gate = chi_squared_quantile(1.0 - significance, Pose::kDof);
   const auto checks = odometry_chi2(graph, roles);
   PruneResult result;
