@@ -1,5 +1,6 @@
 #include "isotherm/slam/prune.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <string>
@@ -18,6 +19,17 @@ using spectral::EdgeVerdicts;
 using spectral::Verdict;
 
 constexpr double kChi2Significance = 0.01;
+
+// Whether covariances can be had of odometry and of loops: some matrix of each says
+// something.
+template <class Pose>
+bool has_information(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
+  const auto says_something = [&graph](Index k) {
+    return !graph.constraints[k].information.isZero(0.0);
+  };
+  return std::ranges::any_of(roles.odometry, says_something) &&
+         std::ranges::any_of(roles.candidates, says_something);
+}
 
 template <class Pose>
 PruneResult prune_by_consensus(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
@@ -209,8 +221,19 @@ PruneResult prune(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                   const PruneOptions& options) {
   options.validate();
   const auto start = std::chrono::steady_clock::now();
-  PruneResult result = run_method(graph, roles, options);
-  result.method = options.method;
+  PruneOptions used = options;
+  const bool blind = options.method == PruneMethod::consensus && !roles.candidates.empty() &&
+                     !has_information(graph, roles);
+  if (blind) {
+    used.method = PruneMethod::heat;
+    used.heat.induction.init = Initialisation::uniform;
+  }
+  PruneResult result = run_method(graph, roles, used);
+  result.method = used.method;
+  if (blind) {
+    result.warnings.push_back(
+        "information matrices say nothing; heat distances with uniform weights decided instead");
+  }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

@@ -1,18 +1,10 @@
 #include "isotherm/slam/consensus.hpp"
 
-#include <cmath>
-
 #include "../candidate_verdicts.hpp"
 #include "isotherm/base/error.hpp"
 #include "search.hpp"
 
 namespace isotherm::slam {
-namespace {
-
-using detail::Search;
-using spectral::Verdict;
-
-}  // namespace
 
 void ConsensusOptions::validate() const {
   if (!(significance > 0.0 && significance < 0.5)) {
@@ -31,7 +23,7 @@ ConsensusResult consensus(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
   result.verdicts = candidate_verdicts(graph, roles);
   if (roles.candidates.empty()) return result;
   const auto reduced = detail::reduce(graph, roles);
-  Search<Pose> search(reduced, options);
+  detail::Search<Pose> search(reduced, options);
   search.run(result);
   for (auto& info : result.details) {
     for (Index& loop : info.conflicts) loop = roles.candidates[loop];

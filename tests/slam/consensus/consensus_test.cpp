@@ -7,6 +7,7 @@
 #include "isotherm/slam/corrupt.hpp"
 #include "isotherm/slam/evaluate_loops.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
+#include "isotherm/slam/prune.hpp"
 #include "isotherm/slam/simulate.hpp"
 #include "isotherm_test/data.hpp"
 #include "slam/loop_graph.hpp"
@@ -166,6 +167,16 @@ TEST(Consensus, SurvivesDriftAndGroupsInACity) {
     EXPECT_GE(metrics.precision(), 0.99);
     EXPECT_GE(metrics.recall(), 0.99);
   }
+}
+
+TYPED_TEST(ConsensusOf, WithoutInformationPruneFallsBackOnHeat) {
+  using Pose = TypeParam;
+  Random random(38);
+  auto made = random_loop_graph<Pose>(random, 30, 10, 0.0);
+  for (auto& constraint : made.graph.constraints) constraint.information.setZero();
+  const auto result = prune(made.graph, edge_roles(made.graph));
+  EXPECT_EQ(result.method, PruneMethod::heat);
+  EXPECT_THAT(result.warnings, testing::Contains(testing::HasSubstr("heat distances")));
 }
 
 TEST(Consensus, OptionsAreChecked) {

@@ -93,7 +93,9 @@ struct PruneResult {
   double seconds = 0.0;               ///< wall time
 };
 
-/// Judges every candidate of `roles` by the chosen method.
+/// Judges every candidate of `roles` by the chosen method. Where all information
+/// matrices of odometry or of candidates are zero, consensus gives way to heat
+/// with uniform weights; `method` and `warnings` of the result say so.
 /// @throws InvalidArgument, NumericalError, Cancelled
 template <class Pose>
 PruneResult prune(const PoseGraph<Pose>& graph, const EdgeRoles& roles,

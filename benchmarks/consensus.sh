@@ -1,0 +1,165 @@
+#!/usr/bin/env bash
+# Forward consensus on clean, corrupted, real and drifting pose graphs.
+# Writes docs/results/consensus.md. Every row is kept in build/consensus-rows, so
+# that an interrupted run goes on where it stopped; remove the folder to start anew.
+# usage: benchmarks/consensus.sh [--quick] [data folder, default $ISOTHERM_DATA or ../shared/data]
+# --quick: one seed, two fractions, no graph that takes more than some seconds
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+quick=false
+if [ "${1:-}" = --quick ]; then quick=true; shift; fi
+data=${1:-${ISOTHERM_DATA:-../shared/data}}
+isotherm=${ISOTHERM:-build/release/apps/isotherm}
+page=docs/results/consensus.md
+rows=build/consensus-rows
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+if [ ! -d "$data" ]; then echo "consensus: no folder $data" >&2; exit 1; fi
+if [ -z "${ISOTHERM:-}" ]; then scripts/build.sh release >/dev/null; fi
+mkdir -p "$rows"
+
+seeds="1 2 3"; fractions="0.1 0.3 0.5 0.7 0.9"
+corrupted="intel CSAIL kitti_00 kitti_02 ringCity city10000 sphere2500 torus3D parking-garage cubicle"
+clean="MIT CSAIL intel ais2klinik ring ringCity city10000 kitti_00 kitti_02 kitti_06 kitti_07 kitti_09
+  B25b_0.600 tinyGrid3D smallGrid3D parking-garage sphere2500 torus3D cubicle"
+if $quick; then
+  seeds=1; fractions="0.5 0.9"
+  corrupted="intel CSAIL kitti_00 kitti_02 ringCity"
+  clean="MIT CSAIL intel ais2klinik ring ringCity kitti_00 kitti_02 kitti_06 kitti_07 kitti_09
+    B25b_0.600 tinyGrid3D smallGrid3D"
+fi
+
+path_of() {
+  case $1 in
+    kitti_*) echo "$data/paper/kitti/$1.g2o" ;;
+    B25b_*) echo "$data/paper/b25b/$1.g2o" ;;
+    intel | CSAIL | MIT | ais2klinik | city10000) echo "$data/posegraph2d/$1/$1.g2o" ;;
+    ring | ringCity) echo "$data/posegraph2d/$1/originalDataset/$1.g2o" ;;
+    torus3D) echo "$data/posegraph3d/torus3D/torus3D.g2o.gz" ;;
+    *) echo "$data/posegraph3d/$1/$1.g2o" ;;
+  esac
+}
+
+# field FILE KEY: a top-level number of a JSON result.
+field() { sed -n "s/^  \"$2\": \(-\{0,1\}[0-9.e-]*\),\{0,1\}$/\1/p" "$1"; }
+
+# cached NAME command...: prints the row of that name, made at most once.
+cached() {
+  local row=$rows/${1//\//_}
+  shift
+  if [ ! -f "$row" ]; then "$@" >"$row.part" && mv "$row.part" "$row"; fi
+  cat "$row"
+}
+
+# judge NAME GRAPH LABELS: a row with the figures of pruning.
+judge() {
+  $isotherm prune "$2" -q -o "$work/pruned.g2o" --verdicts "$work/v.csv" --json "$work/p.json"
+  $isotherm eval loops "$work/v.csv" "$3" --json "$work/e.json" >/dev/null
+  printf '| %s | %.4f | %.4f | %s | %s | %s | %.2f |' "$1" "$(field "$work/e.json" precision)" \
+    "$(field "$work/e.json" recall)" "$(field "$work/e.json" fp)" "$(field "$work/e.json" fn)" \
+    "$(field "$work/p.json" ambiguous)" "$(field "$work/p.json" seconds)"
+}
+
+clean_row() {
+  $isotherm prune "$(path_of "$1")" -q --json "$work/p.json"
+  printf '| %s | %s | %s | %s | %.2f |\n' "$1" "$(field "$work/p.json" candidates)" \
+    "$(field "$work/p.json" pruned)" "$(field "$work/p.json" ambiguous)" \
+    "$(field "$work/p.json" seconds)"
+}
+
+corrupt_row() {
+  local graph=$1 style=$2 type=$3 fraction=$4 seed=$5 truth=$rows/$1.optimum.g2o
+  if [ ! -f "$truth" ]; then $isotherm optimize "$(path_of "$graph")" -o "$truth" -q; fi
+  $isotherm corrupt "$(path_of "$graph")" --ground-truth "$truth" --style "$style" --type "$type" \
+    --fraction "$fraction" --seed "$seed" -o "$work/bad.g2o" --labels "$work/l.csv" -q
+  judge "$graph, $style $type $fraction, seed $seed" "$work/bad.g2o" "$work/l.csv"
+  echo
+}
+
+shared_row() {
+  judge "$1" "$data/outliers/$1.g2o.gz" "$data/outliers/$1.labels.csv"
+  echo
+}
+
+b25b_row() {
+  local truth=$data/paper/b25b/Bicocca_2009-02-25b-GT-extended.csv
+  local stamps=$data/paper/b25b/B25b_timestamps.txt
+  $isotherm label "$2" --ground-truth "$truth" --timestamps "$stamps" -o "$work/l.csv" -q
+  judge "$1" "$2" "$work/l.csv"
+  for kernel in "none" "dcs --kernel-width 5 --algorithm gauss_newton"; do
+    $isotherm optimize "$work/pruned.g2o" --kernel $kernel -o "$work/o.g2o" -q
+    $isotherm eval ate "$work/o.g2o" "$truth" --timestamps "$stamps" --max-gap 0.25 --align se \
+      --json "$work/a.json" >/dev/null
+    printf ' %.3f |' "$(field "$work/a.json" rmse)"
+  done
+  echo
+}
+
+drift_row() {
+  local drift=$1 group=$2 seed=$3
+  $isotherm simulate city --poses 3500 --drift "$drift" --seed "$seed" -o "$work/c.g2o" \
+    --ground-truth "$work/gt.g2o" -q
+  $isotherm corrupt "$work/c.g2o" --ground-truth "$work/gt.g2o" --type random-grouped \
+    --fraction 0.5 --group-size "$group" --seed "$seed" -o "$work/bad.g2o" --labels "$work/l.csv" -q
+  judge "$drift m, groups of $group, seed $seed" "$work/bad.g2o" "$work/l.csv"
+  echo
+}
+
+figures='| graph | precision | recall | true pruned | false not pruned | ambiguous | seconds |
+|---|---|---|---|---|---|---|'
+
+{
+  cat <<'HEAD'
+# Forward consensus: measured
+
+Made by `benchmarks/consensus.sh` at default options for every file. A positive is a
+pruned loop; false loops that are ambiguous count as not pruned. Injected loops are
+labelled at the optimum of the clean graph, real ones by ground truth (2 m, 0.5 rad).
+Seconds are wall time of pruning, on whatever machine and load there was: use them as an
+order of magnitude.
+HEAD
+  if $quick; then
+    echo "This page is of a \`--quick\` run: one seed, fractions $fractions, smaller graphs only."
+  fi
+  printf '\n## Clean graphs\n\n| graph | loops | pruned | ambiguous | seconds |\n|---|---|---|---|---|\n'
+  for graph in $clean; do cached "clean-$graph" clean_row "$graph"; done
+  printf '\n## Injected false loops beside the figures of other programs\n\n%s\n' "$figures"
+  for file in "$data"/outliers/*.g2o.gz; do
+    name=$(basename "$file" .g2o.gz)
+    cached "shared-$name" shared_row "$name"
+  done
+  printf '\n## Real false loops of Bicocca, and the five noise types on top\n\n'
+  printf 'RMSE in metres after rigid alignment of the optimised result, without a kernel and with DCS (width 5).\n\n'
+  printf '%s RMSE | RMSE, DCS |\n%s---|---|\n' "${figures%%$'\n'*}" "${figures##*$'\n'}"
+  for alpha in 0.000 0.100 0.200 0.300; do
+    cached "b25b-$alpha" b25b_row "α = $alpha" "$data/paper/b25b/B25b_$alpha.g2o"
+  done
+  for file in "$data"/paper/b25b_noise5/*.g2o; do
+    name=$(basename "$file" .g2o)
+    cached "b25b-$name" b25b_row "${name#B25b_0.000-}" "$file"
+  done
+  printf '\n## Drift: cities of 3,500 poses, half of the loops false and in groups\n\n%s\n' "$figures"
+  for drift in 5 20 40; do
+    for group in 5 10 20; do
+      for seed in $seeds; do cached "drift-$drift-$group-$seed" drift_row "$drift" "$group" "$seed"; done
+    done
+  done
+  printf '\n## Injected false loops: five types, both styles\n\n%s\n' "$figures"
+  for graph in $corrupted; do
+    for style in vertigo paper; do
+      for type in random local random-grouped local-grouped all-random; do
+        for fraction in $fractions; do
+          for seed in $seeds; do
+            cached "corrupt-$graph-$style-$type-$fraction-$seed" \
+              corrupt_row "$graph" "$style" "$type" "$fraction" "$seed"
+          done
+        done
+      done
+    done
+  done
+} >"$work/page.md"
+mkdir -p "$(dirname "$page")"
+mv "$work/page.md" "$page"
+echo "consensus: wrote $page" >&2
