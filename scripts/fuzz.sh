@@ -10,6 +10,10 @@ shift || true
 harnesses=("$@")
 if [ "${#harnesses[@]}" -eq 0 ]; then harnesses=(pose_graph trajectory ranges graph csv); fi
 
+if ! command -v clang++-14 >/dev/null; then
+  echo "fuzz: needs clang++-14 (Debian package clang-14)" >&2
+  exit 1
+fi
 cmake --preset fuzz
 cmake --build build/fuzz --target fuzzers
 mkdir -p build/fuzz/finds
