@@ -2,13 +2,18 @@
 # Forward consensus on clean, corrupted, real and drifting pose graphs.
 # Writes docs/results/consensus.md. Every row is kept in build/consensus-rows, so
 # that an interrupted run goes on where it stopped; remove the folder to start anew.
-# usage: benchmarks/consensus.sh [--quick] [data folder, default $ISOTHERM_DATA or ../shared/data]
-# --quick: one seed, two fractions, no graph that takes more than some seconds
+# usage: benchmarks/consensus.sh [--quick] [--rows-so-far] [data folder]
+#   --quick        one seed, two fractions, no graph that takes more than some seconds
+#   --rows-so-far  writes the page from the rows that are there, and measures nothing
+#   data folder    default $ISOTHERM_DATA or ../shared/data
+# ISOTHERM names the command to measure; without it, the release preset is built.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 quick=false
+measure=true
 if [ "${1:-}" = --quick ]; then quick=true; shift; fi
+if [ "${1:-}" = --rows-so-far ]; then measure=false; shift; fi
 data=${1:-${ISOTHERM_DATA:-../shared/data}}
 isotherm=${ISOTHERM:-build/release/apps/isotherm}
 page=docs/results/consensus.md
@@ -17,8 +22,9 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 if [ ! -d "$data" ]; then echo "consensus: no folder $data" >&2; exit 1; fi
-if [ -z "${ISOTHERM:-}" ]; then scripts/build.sh release >/dev/null; fi
+if $measure && [ -z "${ISOTHERM:-}" ]; then scripts/build.sh release >/dev/null; fi
 mkdir -p "$rows"
+missing=0
 
 seeds="1 2 3"; fractions="0.1 0.3 0.5 0.7 0.9"
 corrupted="intel CSAIL kitti_00 kitti_02 ringCity city10000 sphere2500 torus3D parking-garage cubicle"
@@ -49,24 +55,32 @@ field() { sed -n "s/^  \"$2\": \(-\{0,1\}[0-9.e-]*\),\{0,1\}$/\1/p" "$1"; }
 cached() {
   local row=$rows/${1//\//_}
   shift
-  if [ ! -f "$row" ]; then "$@" >"$row.part" && mv "$row.part" "$row"; fi
+  if [ ! -f "$row" ]; then
+    if ! $measure; then missing=$((missing + 1)); return; fi
+    "$@" >"$row.part"
+    mv "$row.part" "$row"
+  fi
   cat "$row"
 }
 
+# prune arguments...: on one thread; the CPU time it takes goes to $work/seconds.
+TIMEFORMAT=%U
+prune() { { time $isotherm prune --threads 1 -q "$@" 2>&3; } 3>&2 2>"$work/seconds"; }
+
 # judge NAME GRAPH LABELS: a row with the figures of pruning.
 judge() {
-  $isotherm prune "$2" -q -o "$work/pruned.g2o" --verdicts "$work/v.csv" --json "$work/p.json"
+  prune "$2" -o "$work/pruned.g2o" --verdicts "$work/v.csv" --json "$work/p.json"
   $isotherm eval loops "$work/v.csv" "$3" --json "$work/e.json" >/dev/null
   printf '| %s | %.4f | %.4f | %s | %s | %s | %.2f |' "$1" "$(field "$work/e.json" precision)" \
     "$(field "$work/e.json" recall)" "$(field "$work/e.json" fp)" "$(field "$work/e.json" fn)" \
-    "$(field "$work/p.json" ambiguous)" "$(field "$work/p.json" seconds)"
+    "$(field "$work/p.json" ambiguous)" "$(cat "$work/seconds")"
 }
 
 clean_row() {
-  $isotherm prune "$(path_of "$1")" -q --json "$work/p.json"
+  prune "$(path_of "$1")" --json "$work/p.json"
   printf '| %s | %s | %s | %s | %.2f |\n' "$1" "$(field "$work/p.json" candidates)" \
     "$(field "$work/p.json" pruned)" "$(field "$work/p.json" ambiguous)" \
-    "$(field "$work/p.json" seconds)"
+    "$(cat "$work/seconds")"
 }
 
 corrupt_row() {
@@ -117,8 +131,7 @@ figures='| graph | precision | recall | true pruned | false not pruned | ambiguo
 Made by `benchmarks/consensus.sh` at default options for every file. A positive is a
 pruned loop; false loops that are ambiguous count as not pruned. Injected loops are
 labelled at the optimum of the clean graph, real ones by ground truth (2 m, 0.5 rad).
-Seconds are wall time of pruning, on whatever machine and load there was: use them as an
-order of magnitude.
+Seconds are CPU time of `isotherm prune --threads 1`, reading and writing included.
 HEAD
   if $quick; then
     echo "This page is of a \`--quick\` run: one seed, fractions $fractions, smaller graphs only."
@@ -159,6 +172,9 @@ HEAD
       done
     done
   done
+  if [ "$missing" -gt 0 ]; then
+    printf '\n%s further rows of this list have not been measured yet.\n' "$missing"
+  fi
 } >"$work/page.md"
 mkdir -p "$(dirname "$page")"
 mv "$work/page.md" "$page"
