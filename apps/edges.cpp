@@ -7,6 +7,7 @@
 #include "isotherm/spectral/graph_file.hpp"
 #include "isotherm/spectral/judge_edges.hpp"
 #include "isotherm/spectral/verdict_file.hpp"
+#include "option_verb.hpp"
 #include "verbs.hpp"
 
 namespace isotherm::apps {
@@ -14,21 +15,14 @@ namespace {
 
 using namespace spectral;
 
-struct EdgesVerb {
-  CommonFlags flags;
+struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
   std::string input;
   std::string output;
   std::string verdicts;
   bool keep_ambiguous = false;
-  JudgeEdgesOptions options;
-  std::unique_ptr<FlaggedOptions<JudgeEdgesOptions>> flagged;
 
   int run() {
-    flagged->resolve(read_config(flags));
-    if (flags.dump_config) {
-      write_json("-", options_to_json(options));
-      return kOk;
-    }
+    if (resolve_or_dump()) return kOk;
     options.threads = flags.threads;
     options.progress = progress_line(flags);
     const auto file = read_graph(input, {.strict = flags.strict});
@@ -96,8 +90,7 @@ Verb add_edges(CLI::App& root) {
       ->type_name("FILE");
   verb->add_flag("--keep-ambiguous", edges->keep_ambiguous,
                  "keep edges that are not proven either way, such as bridges");
-  edges->flagged = std::make_unique<FlaggedOptions<JudgeEdgesOptions>>(*verb, edges->options);
-  add_common_flags(*verb, edges->flags);
+  edges->add_flags(*verb);
   return {verb, [edges] { return edges->run(); }};
 }
 

@@ -10,6 +10,7 @@
 #include "isotherm/base/text_writer.hpp"
 #include "isotherm/spectral/embedding.hpp"
 #include "isotherm/spectral/graph_file.hpp"
+#include "option_verb.hpp"
 #include "verbs.hpp"
 
 namespace isotherm::apps {
@@ -95,19 +96,12 @@ std::string npy_text(const Eigen::MatrixXd& rows) {
   return text;
 }
 
-struct EmbedVerb {
-  CommonFlags flags;
+struct EmbedVerb : OptionVerb<EmbedOptions> {
   std::string input;
   std::string output;
-  EmbedOptions options;
-  std::unique_ptr<FlaggedOptions<EmbedOptions>> flagged;
 
   int run() {
-    flagged->resolve(read_config(flags));
-    if (flags.dump_config) {
-      write_json("-", options_to_json(options));
-      return kOk;
-    }
+    if (resolve_or_dump()) return kOk;
     options.validate();
     const auto file = read_graph(input, {.strict = flags.strict});
     for (const auto& diagnostic : file.report.diagnostics) warn(flags, to_string(diagnostic));
@@ -163,8 +157,7 @@ Verb add_embed(CLI::App& root) {
                    "coordinates to write: CSV, or NumPy if named .npy (- for stdout)")
       ->required()
       ->type_name("FILE");
-  embed->flagged = std::make_unique<FlaggedOptions<EmbedOptions>>(*verb, embed->options);
-  add_common_flags(*verb, embed->flags);
+  embed->add_flags(*verb);
   return {verb, [embed] { return embed->run(); }};
 }
 

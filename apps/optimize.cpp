@@ -8,6 +8,7 @@
 #include "console.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm/slam/io/trajectory_file.hpp"
+#include "option_verb.hpp"
 #include "pose_graph_input.hpp"
 #include "verbs.hpp"
 
@@ -16,19 +17,12 @@ namespace {
 
 using namespace slam;
 
-struct OptimizeVerb {
-  CommonFlags flags;
+struct OptimizeVerb : OptionVerb<OptimizeOptions> {
   std::string input;
   std::string output;
-  OptimizeOptions options;
-  std::unique_ptr<FlaggedOptions<OptimizeOptions>> flagged;
 
   int run() {
-    flagged->resolve(read_config(flags));
-    if (flags.dump_config) {
-      write_json("-", options_to_json(options));
-      return kOk;
-    }
+    if (resolve_or_dump()) return kOk;
     options.progress = progress_line(flags);
     auto file = read_input_graph(input, flags);
     return std::visit([&](auto& graph) { return run_on(graph, file); }, file.graph);
@@ -90,8 +84,7 @@ Verb add_optimize(CLI::App& root) {
   verb->add_option("-o,--output", optimize->output,
                    "optimised pose graph (g2o; - for stdout), or trajectory if it ends in .tum")
       ->type_name("FILE");
-  optimize->flagged = std::make_unique<FlaggedOptions<OptimizeOptions>>(*verb, optimize->options);
-  add_common_flags(*verb, optimize->flags);
+  optimize->add_flags(*verb);
   return {verb, [optimize] { return optimize->run(); }};
 }
 
