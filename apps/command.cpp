@@ -7,6 +7,16 @@
 
 namespace isotherm::apps {
 
+Verb one_of(CLI::App* parent, std::vector<Verb> subcommands) {
+  parent->require_subcommand(1);
+  return {parent, [subcommands = std::move(subcommands)] {
+            for (const auto& subcommand : subcommands) {
+              if (subcommand.parser->parsed()) return subcommand.run();
+            }
+            return static_cast<int>(kUsage);
+          }};
+}
+
 void add_common_flags(CLI::App& verb, CommonFlags& flags) {
   const auto group = [](CLI::Option* option) { option->group("Common"); };
   group(verb.add_option("--json", flags.json, "write the result as JSON (- for stdout)")

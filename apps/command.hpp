@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -25,6 +26,9 @@ struct Verb {
   CLI::App* parser = nullptr;
   std::function<int()> run;
 };
+
+/// The verb `parent` that runs whichever of its subcommands was chosen.
+Verb one_of(CLI::App* parent, std::vector<Verb> subcommands);
 
 /// Flags every verb understands.
 struct CommonFlags {

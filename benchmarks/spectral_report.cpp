@@ -77,7 +77,7 @@ Problem load(const std::string& name) {
   const auto colon = name.find(':', 5);
   slam::CityOptions options;
   options.poses = std::stol(name.substr(5, colon - 5));
-  options.loops = std::stol(name.substr(colon + 1));
+  options.measurements.loops = std::stol(name.substr(colon + 1));
   return induce_problem(slam::simulate_city(options).graph);
 }
 

@@ -18,7 +18,7 @@ using namespace isotherm::spectral;
 WeightedGraph city(std::int64_t poses) {
   slam::CityOptions options;
   options.poses = poses;
-  options.loops = poses / 10;
+  options.measurements.loops = poses / 10;
   const auto simulation = slam::simulate_city(options);
   return slam::induce(simulation.graph, slam::edge_roles(simulation.graph)).graph;
 }

@@ -10,7 +10,7 @@
 int main() {
   using namespace isotherm::slam;
 
-  const auto city = simulate_city({.poses = 1000, .loops = 400, .seed = 7});
+  const auto city = simulate_city({.poses = 1000, .measurements = {.loops = 400}, .seed = 7});
   const auto corrupted = corrupt(city.graph, city.truth, {.count = 200, .seed = 7});
 
   const auto roles = edge_roles(corrupted.graph);

@@ -13,7 +13,8 @@ namespace isotherm::slam {
 namespace {
 
 const Simulation<Pose2>& city() {
-  static const auto simulation = simulate_city({.poses = 1000, .loops = 400, .seed = 1});
+  static const auto simulation =
+      simulate_city({.poses = 1000, .measurements = {.loops = 400}, .seed = 1});
   return simulation;
 }
 
@@ -176,7 +177,7 @@ TEST(Corrupt, RejectsWhatCannotBeDone) {
   EXPECT_THROW(corrupt_city({.count = 1, .ratio = 1.0}), InvalidArgument);
   EXPECT_THROW(corrupt_city({.fraction = 1.0}), InvalidArgument);
   EXPECT_THROW(corrupt(city().graph, {}, {.count = 1}), InvalidArgument) << "no truth";
-  const auto no_loops = simulate_city({.poses = 100, .loops = 0});
+  const auto no_loops = simulate_city({.poses = 100, .measurements = {.loops = 0}});
   EXPECT_THROW(corrupt(no_loops.graph, no_loops.truth, {.count = 1}), InvalidArgument);
 }
 

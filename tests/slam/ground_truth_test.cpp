@@ -68,8 +68,8 @@ TEST_F(GroundTruth, KittiCameraPosesAreSeenFromAbove) {
     return number(m00) + "0 " + number(m02) + number(x) + "0 1 0 0 " + number(m20) + "0 " +
            number(m22) + number(z) + "\n";
   };
-  const auto path = write("gt.txt", row(1, 0, 0, 0, 1, 0) + row(c, -s, 2, s, c, 5) +
-                                        row(1, 0, 0, 0, 1, 0));
+  const auto path =
+      write("gt.txt", row(1, 0, 0, 0, 1, 0) + row(c, -s, 2, s, c, 5) + row(1, 0, 0, 0, 1, 0));
   const auto truth = read_ground_truth(graph, {.path = path, .timestamps = {}});
   EXPECT_LT((truth[1]->translation() - Eigen::Vector2d(5, -2)).norm(), 1e-9);
   EXPECT_NEAR(truth[1]->angle(), 0.3, 1e-5);
@@ -89,9 +89,9 @@ TEST(RealGroundTruth, HalfOfTheLoopsOfBicoccaAreIncorrect) {
   ISOTHERM_REAL_DATA_OR_SKIP(folder, "paper/b25b");
   const auto file = read_pose_graph((folder / "B25b_0.000.g2o").string());
   const auto& graph = std::get<PoseGraph<Pose2>>(file.graph);
-  const auto truth = read_ground_truth(
-      graph, {.path = (folder / "Bicocca_2009-02-25b-GT-extended.csv").string(),
-              .timestamps = (folder / "B25b_timestamps.txt").string()});
+  const auto truth =
+      read_ground_truth(graph, {.path = (folder / "Bicocca_2009-02-25b-GT-extended.csv").string(),
+                                .timestamps = (folder / "B25b_timestamps.txt").string()});
   const auto labels = label_candidates(graph, edge_roles(graph), truth);
   EXPECT_EQ(labels.size(), 446u);
   EXPECT_EQ(count(labels, Label::incorrect), 221);

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 #include "isotherm/base/error.hpp"
 #include "isotherm/slam/corrupt.hpp"
@@ -81,7 +81,7 @@ void expect_dense_distances(const PoseGraph<Pose>& graph, HeatPruneOptions optio
 }
 
 Corrupted<Pose2> corrupted_city() {
-  const auto city = simulate_city({.poses = 300, .loops = 120, .seed = 2});
+  const auto city = simulate_city({.poses = 300, .measurements = {.loops = 120}, .seed = 2});
   return corrupt(city.graph, city.truth, {.count = 60, .seed = 2});
 }
 
@@ -144,7 +144,7 @@ TEST(HeatPrune, SeparatesFalseLoopsAndScoresRank) {
 }
 
 TEST(HeatPrune, AnUncorruptedGraphKeepsNearlyEverything) {
-  const auto city = simulate_city({.poses = 400, .loops = 200, .seed = 3});
+  const auto city = simulate_city({.poses = 400, .measurements = {.loops = 200}, .seed = 3});
   const auto result = heat_prune(city.graph, edge_roles(city.graph));
   EXPECT_EQ(count(result.verdicts, Verdict::prune), 0);
 }

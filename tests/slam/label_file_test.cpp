@@ -16,8 +16,8 @@ TEST(LabelFile, RoundTripAndErrors) {
                      ("isotherm.labels." + std::to_string(getpid()) + ".csv"))
                         .string();
   const VertexId big = VertexId{1} << 63;
-  write_labels(path, {{7, 1, big, Label::correct}, {8, 2, 3, Label::incorrect},
-                      {9, 4, 5, Label::ignore}});
+  write_labels(
+      path, {{7, 1, big, Label::correct}, {8, 2, 3, Label::incorrect}, {9, 4, 5, Label::ignore}});
   const auto labels = read_labels(path);
   ASSERT_EQ(labels.size(), 3u);
   EXPECT_EQ(labels[0].edge, 7);

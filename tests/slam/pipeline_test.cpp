@@ -17,7 +17,7 @@ double worst_error(const std::vector<Pose2>& poses, const std::vector<Pose2>& tr
 }
 
 TEST(Pipeline, RecoversTheMapThatFalseLoopsRuin) {
-  const auto city = simulate_city({.poses = 600, .loops = 300, .seed = 5});
+  const auto city = simulate_city({.poses = 600, .measurements = {.loops = 300}, .seed = 5});
   const auto corrupted = corrupt(city.graph, city.truth, {.count = 150, .seed = 5});
   const auto result = prune_and_optimize(corrupted.graph, {.prune = {.method = PruneMethod::chi2}});
 

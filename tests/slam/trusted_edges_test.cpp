@@ -21,8 +21,11 @@ class TrustedEdges : public testing::Test {
  protected:
   TrustedEdges() {
     graph.ids = {10, 11, 12, 13};
-    graph.constraints = {{0, 1, Pose2(1, 0, 0)}, {1, 2, Pose2(1, 0, 0)}, {2, 3, Pose2(1, 0, 0)},
-                         {3, 0, Pose2(-3, 0, 0)}, {0, 2, Pose2(7, 7, 1)}};
+    graph.constraints = {{0, 1, Pose2(1, 0, 0)},
+                         {1, 2, Pose2(1, 0, 0)},
+                         {2, 3, Pose2(1, 0, 0)},
+                         {3, 0, Pose2(-3, 0, 0)},
+                         {0, 2, Pose2(7, 7, 1)}};
   }
   ~TrustedEdges() override { std::filesystem::remove(path); }
 

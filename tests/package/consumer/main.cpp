@@ -9,7 +9,7 @@ int main() {
   using namespace isotherm;
   const spectral::WeightedGraph triangle(3, {{0, 1, 1.0}, {1, 2, 1.0}, {2, 0, 1.0}});
   const geometry::Polyline<2> line({{0.0, 0.0}, {3.0, 4.0}});
-  const auto city = slam::simulate_city({.poses = 200, .loops = 50});
+  const auto city = slam::simulate_city({.poses = 200, .measurements = {.loops = 50}});
   const auto result = slam::prune(city.graph, slam::edge_roles(city.graph));
   const bool ok = spectral::connected_components(triangle).count == 1 && line.length() == 5.0 &&
                   result.verdicts.size() == 50;

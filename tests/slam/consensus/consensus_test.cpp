@@ -143,7 +143,8 @@ TYPED_TEST(ConsensusOf, ProgressIsReportedAndCanCancel) {
 }
 
 TEST(Consensus, SameVerdictsForAnyNumberOfThreads) {
-  const auto city = simulate_city({.poses = 400, .loops = 150, .drift = 10.0, .seed = 5});
+  const auto city =
+      simulate_city({.poses = 400, .measurements = {.loops = 150, .drift = 10.0}, .seed = 5});
   const auto bad =
       corrupt(city.graph, city.truth, {.type = NoiseType::random_grouped, .count = 150, .seed = 5});
   const auto roles = edge_roles(bad.graph);
@@ -157,7 +158,7 @@ TEST(Consensus, SameVerdictsForAnyNumberOfThreads) {
 }
 
 TEST(Consensus, SurvivesDriftAndGroupsInACity) {
-  const auto city = simulate_city({.poses = 1500, .drift = 20.0, .seed = 1});
+  const auto city = simulate_city({.poses = 1500, .measurements = {.drift = 20.0}, .seed = 1});
   for (const std::int64_t size : {5, 20}) {
     const auto bad = corrupt(
         city.graph, city.truth,
