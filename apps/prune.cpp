@@ -29,17 +29,30 @@ Json to_json(const HeatRound& round) {
           {"candidates", round.candidates}, {"pruned", round.pruned}};
 }
 
-Json to_json(const ConsensusResult& result) {
+// Why each candidate was decided as it was; edges are numbered as in the verdicts.
+Json to_json(const ConsensusDetail& detail, const spectral::EdgeVerdict& verdict) {
+  return {{"edge", verdict.edge},
+          {"chi2", finite_or_null(detail.chi2)},
+          {"evidence", finite_or_null(detail.evidence)},
+          {"round", detail.round},
+          {"conflicts", detail.conflicts}};
+}
+
+Json to_json(const ConsensusResult& result, const spectral::EdgeVerdicts& verdicts) {
   Json json = {{"inlier_fraction", result.inlier_fraction},
                {"odometry_scale", result.odometry_scale},
                {"loop_scale", result.loop_scale},
                {"settled", result.settled},
-               {"rounds", Json::array()}};
+               {"rounds", Json::array()},
+               {"loops", Json::array()}};
   for (const auto& round : result.rounds) {
     json["rounds"].push_back({{"rule", round.rule},
                               {"accepted", round.accepted},
                               {"dropped", round.dropped},
                               {"in_force", round.in_force}});
+  }
+  for (std::size_t k = 0; k < result.details.size(); ++k) {
+    json["loops"].push_back(to_json(result.details[k], verdicts[k]));
   }
   return json;
 }
@@ -58,7 +71,9 @@ Json to_json(const PruneResult& result, const PruneOptions& options) {
     json["rounds"] = Json::array();
     for (const auto& round : result.rounds) json["rounds"].push_back(to_json(round));
   }
-  if (result.method == PruneMethod::consensus) json["consensus"] = to_json(result.consensus);
+  if (result.method == PruneMethod::consensus) {
+    json["consensus"] = to_json(result.consensus, result.verdicts);
+  }
   return json;
 }
 

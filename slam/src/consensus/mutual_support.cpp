@@ -11,23 +11,6 @@ namespace {
 // More partners than this tell nothing new; the nearest are taken.
 constexpr std::size_t kMostPartners = 12;
 
-// A loop stated from the earlier vertex to the later one.
-template <class Pose>
-struct Forward {
-  Index from = 0;
-  Index to = 0;
-  UncertainPose<Pose> measured;
-};
-
-template <class Pose>
-Forward<Pose> forward(const ReducedGraph<Pose>& graph, const Link<Pose>& loop, double scale) {
-  const Index a = graph.vertex[loop.a];
-  const Index b = graph.vertex[loop.b];
-  const UncertainPose<Pose> measured{loop.T_a_b, loop.covariance * scale};
-  if (a <= b) return {a, b, measured};
-  return {b, a, inverse(measured)};
-}
-
 // Loops by cells of `window` x `window` vertices in the plane of (from, to).
 class Cells {
  public:
@@ -60,20 +43,19 @@ class Cells {
   std::map<Key, std::vector<Index>> cells_;
 };
 
+// For each loop those of the same chains within the window at both ends, nearest first.
 template <class Pose>
-class Comparison {
+class Neighbourhood {
  public:
-  Comparison(const ReducedGraph<Pose>& graph, const CovarianceScale& scale, Index window)
-      : graph_(graph), scale_(scale), window_(window), cells_(window, graph.loops.size()) {
-    for (const auto& loop : graph.loops) {
-      loops_.push_back(forward(graph, loop, scale.loops));
-      const auto& added = loops_.back();
-      cells_.add(static_cast<Index>(loops_.size()) - 1, graph.odometry.chain(added.from),
-                 graph.odometry.chain(added.to), added.from, added.to);
+  Neighbourhood(const ReducedGraph<Pose>& graph, const std::vector<ForwardLoop<Pose>>& loops,
+                Index window)
+      : loops_(loops), window_(window), cells_(window, loops.size()) {
+    for (std::size_t k = 0; k < loops.size(); ++k) {
+      cells_.add(static_cast<Index>(k), graph.odometry.chain(loops[k].from),
+                 graph.odometry.chain(loops[k].to), loops[k].from, loops[k].to);
     }
   }
 
-  // Partners that come later in the list, nearest first.
   std::vector<Index> partners(Index loop) const {
     std::vector<std::pair<Index, Index>> near;
     cells_.for_each_near(loop, [&](Index other) {
@@ -89,26 +71,9 @@ class Comparison {
     return result;
   }
 
-  Evidence compare(Index first, Index second, const MapVolume<Pose>& map) const {
-    const auto& e = loops_[first];
-    const auto& f = loops_[second];
-    const auto predicted = compose(compose(along(f.from, e.from), e.measured), along(e.to, f.to));
-    const typename Pose::Tangent r = (f.measured.T.inverse() * predicted.T).log();
-    const typename Pose::Matrix j = residual_jacobian<Pose>(r);
-    return weigh(r, f.measured.covariance + j * predicted.covariance * j.transpose(), map);
-  }
-
  private:
-  UncertainPose<Pose> along(Index from, Index to) const {
-    auto path = graph_.odometry.relative(from, to);
-    path.covariance *= scale_.odometry;
-    return path;
-  }
-
-  const ReducedGraph<Pose>& graph_;
-  CovarianceScale scale_;
+  const std::vector<ForwardLoop<Pose>>& loops_;
   Index window_;
-  std::vector<Forward<Pose>> loops_;
   Cells cells_;
 };
 
@@ -117,10 +82,11 @@ class Comparison {
 template <class Pose>
 MutualSupport mutual_support(const ReducedGraph<Pose>& graph, const MapVolume<Pose>& map,
                              const CovarianceScale& scale, Index window, double gate) {
-  const Comparison<Pose> comparison(graph, scale, window);
+  const auto loops = forward_loops(graph, scale);
+  const Neighbourhood<Pose> neighbourhood(graph, loops, window);
   std::vector<std::pair<Index, Index>> pairs;
   for (Index loop = 0; loop < static_cast<Index>(graph.loops.size()); ++loop) {
-    for (const Index other : comparison.partners(loop)) {
+    for (const Index other : neighbourhood.partners(loop)) {
       pairs.emplace_back(std::min(loop, other), std::max(loop, other));
     }
   }
@@ -129,7 +95,7 @@ MutualSupport mutual_support(const ReducedGraph<Pose>& graph, const MapVolume<Po
 
   MutualSupport support;
   for (const auto& [first, second] : pairs) {
-    const Evidence evidence = comparison.compare(first, second, map);
+    const Evidence evidence = compare(graph, scale, loops[first], loops[second], map);
     auto& kind = evidence.chi2 <= gate ? support.agreeing : support.contradicting;
     kind.push_back({first, second, evidence.log_ratio});
   }

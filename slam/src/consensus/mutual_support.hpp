@@ -2,9 +2,7 @@
 
 #include <vector>
 
-#include "estimate.hpp"
-#include "map_volume.hpp"
-#include "reduced_graph.hpp"
+#include "loop_pair.hpp"
 
 namespace isotherm::slam::detail {
 

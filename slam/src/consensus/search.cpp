@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "conflicts.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/statistics.hpp"
 #include "parallel.hpp"
@@ -453,6 +454,7 @@ void Search<Pose>::report(ConsensusResult& result) const {
   result.loop_scale = scale_.loops;
   result.settled = settled_;
   result.details.resize(states_.size());
+  std::vector<bool> refuted(states_.size(), false);
   for (std::size_t k = 0; k < states_.size(); ++k) {
     const auto& state = states_[k];
     auto& verdict = result.verdicts[k];
@@ -461,6 +463,7 @@ void Search<Pose>::report(ConsensusResult& result) const {
     if (accepted_[k]) {
       verdict.stage = "round " + std::to_string(state.round);
     } else if (state.evidence.chi2 > gate_) {
+      refuted[k] = true;
       verdict.verdict = Verdict::prune;
       verdict.stage = "refuted";
     } else {
@@ -473,12 +476,9 @@ void Search<Pose>::report(ConsensusResult& result) const {
     info.round = state.round;
     info.connected = state.connected;
   }
-  for (const auto& pair : support_.contradicting) {
-    if (accepted_[pair.first] && !accepted_[pair.second]) {
-      result.details[pair.second].conflicts.push_back(pair.first);
-    } else if (accepted_[pair.second] && !accepted_[pair.first]) {
-      result.details[pair.first].conflicts.push_back(pair.second);
-    }
+  auto conflicts = name_conflicts(graph_, map_, scale_, gate_, accepted_, refuted);
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    result.details[k].conflicts = std::move(conflicts[k]);
   }
 }
 

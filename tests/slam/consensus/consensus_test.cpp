@@ -1,5 +1,7 @@
 #include "isotherm/slam/consensus.hpp"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -50,6 +52,13 @@ TYPED_TEST(ConsensusOf, FindsFalseLoops) {
       EXPECT_EQ(verdict.verdict == Verdict::prune, verdict.score > verdict.threshold);
       EXPECT_EQ(verdict.verdict == Verdict::keep, result.details[k].round > 0);
       EXPECT_EQ(verdict.score, result.details[k].chi2);
+      EXPECT_EQ(verdict.verdict == Verdict::prune, !result.details[k].conflicts.empty());
+      EXPECT_LE(result.details[k].conflicts.size(), 3u);
+      for (const Index other : result.details[k].conflicts) {
+        EXPECT_TRUE(std::ranges::any_of(result.verdicts, [other](const auto& kept) {
+          return kept.edge == other && kept.verdict == Verdict::keep;
+        }));
+      }
     }
   }
 }

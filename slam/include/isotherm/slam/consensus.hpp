@@ -48,7 +48,10 @@ struct ConsensusDetail {
   double evidence = 0.0;  ///< log odds of inlier against anywhere, without the prior
   int round = 0;          ///< round that accepted it; 0: never accepted
   bool connected = true;  ///< false: neither odometry nor accepted loops join its ends
-  /// Accepted loops (constraint numbers) near it that contradict it directly.
+  /// Of a pruned loop: accepted ones (constraint numbers) that stand against it, at
+  /// most three, nearest first. Each contradicts it with no more than the odometry
+  /// between their ends; where none alone does, those nearest to it, which do so
+  /// together. Empty where no accepted loop joins the same odometry chains.
   std::vector<Index> conflicts;
 };
 

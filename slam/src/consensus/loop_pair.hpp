@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "estimate.hpp"
+#include "map_volume.hpp"
+#include "reduced_graph.hpp"
+
+namespace isotherm::slam::detail {
+
+/// A loop stated from the earlier vertex to the later one.
+template <class Pose>
+struct ForwardLoop {
+  Index from = 0;  ///< vertices of the full graph, from <= to
+  Index to = 0;
+  UncertainPose<Pose> measured;  ///< T_from_to
+};
+
+/// Every loop of `graph`, in order, with its covariance calibrated.
+template <class Pose>
+std::vector<ForwardLoop<Pose>> forward_loops(const ReducedGraph<Pose>& graph,
+                                             const CovarianceScale& scale);
+
+/// How `measured` compares with what `known` and the two pieces of odometry between
+/// their ends predict. The prediction does not depend on the estimate, nor on how far
+/// odometry has drifted between the two ends of the loops. Both must run between the
+/// same chains.
+template <class Pose>
+Evidence compare(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
+                 const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured,
+                 const MapVolume<Pose>& map);
+
+}  // namespace isotherm::slam::detail
