@@ -1,9 +1,13 @@
 #include <cmath>
 #include <memory>
+#include <numeric>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "console.hpp"
+#include "isotherm/geometry/neighbour_graph.hpp"
+#include "isotherm/geometry/point_cloud.hpp"
 #include "isotherm/spectral/graph_file.hpp"
 #include "isotherm/spectral/judge_edges.hpp"
 #include "isotherm/spectral/verdict_file.hpp"
@@ -20,12 +24,14 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
   std::string output;
   std::string verdicts;
   bool keep_ambiguous = false;
+  std::optional<int> neighbours;  // of a point, where the input is a cloud
+  std::optional<double> radius;   // in the unit of the cloud
 
   int run() {
     if (resolve_or_dump()) return kOk;
     options.threads = flags.threads;
     options.progress = progress_line(flags);
-    const auto file = read_graph(input, {.strict = flags.strict});
+    const auto file = read_input();
     for (const auto& diagnostic : file.report.diagnostics) warn(flags, to_string(diagnostic));
     auto result = judge_edges(file.graph, options);
     name_vertices(result.verdicts, file.ids);
@@ -34,6 +40,21 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
     if (!verdicts.empty()) write_verdicts(verdicts, result.verdicts);
     write_json(flags.json, to_json(result));
     return kOk;
+  }
+
+  // The graph of the file, or of the points in it.
+  GraphFile read_input() const {
+    if (!neighbours && !radius) return read_graph(input, {.strict = flags.strict});
+    auto cloud = geometry::read_points(input);
+    const geometry::NeighbourGraphOptions how = {.threads = flags.threads,
+                                                 .progress = progress_line(flags)};
+    GraphFile file;
+    file.graph = neighbours ? geometry::nearest_neighbour_graph(cloud.points, *neighbours, how)
+                            : geometry::radius_graph(cloud.points, *radius, how);
+    file.ids.resize(file.graph.vertex_count());
+    std::iota(file.ids.begin(), file.ids.end(), 0);
+    file.report = std::move(cloud.report);
+    return file;
   }
 
   // Verdict files carry the input's own vertex numbers.
@@ -82,8 +103,15 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
 Verb add_edges(CLI::App& root) {
   auto edges = std::make_shared<EdgesVerb>();
   CLI::App* verb = root.add_subcommand("edges", "remove false edges from a weighted graph");
-  verb->add_option("input", edges->input, "edge list or MatrixMarket file (- for stdin)")
+  verb->add_option("input", edges->input, "edge list, MatrixMarket or point file (- for stdin)")
       ->required();
+  auto* neighbours = verb->add_option("--neighbours", edges->neighbours,
+                                      "the input is points: join each to so many nearest ones")
+                         ->type_name("COUNT");
+  verb->add_option("--radius", edges->radius,
+                   "the input is points: join those at most so far from each other")
+      ->type_name("DISTANCE")
+      ->excludes(neighbours);
   verb->add_option("-o,--output", edges->output, "kept edges to write, as CSV (- for stdout)")
       ->type_name("FILE");
   verb->add_option("--verdicts", edges->verdicts, "decision and reason an edge, as CSV")

@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 seconds=${1:-600}
 shift || true
 harnesses=("$@")
-if [ "${#harnesses[@]}" -eq 0 ]; then harnesses=(pose_graph trajectory ranges graph csv); fi
+if [ "${#harnesses[@]}" -eq 0 ]; then harnesses=(pose_graph trajectory ranges graph points csv); fi
 
 if ! command -v clang++-14 >/dev/null; then
   echo "fuzz: needs clang++-14 (Debian package clang-14)" >&2

@@ -8,7 +8,7 @@ packages=(
   build-essential cmake ninja-build ccache
   # libraries
   libboost-dev libcgal-dev libeigen3-dev libspectra-dev libsuitesparse-dev libtbb-dev zlib1g-dev
-  libfast-float-dev libcli11-dev nlohmann-json3-dev libfmt-dev
+  libfast-float-dev libnanoflann-dev libcli11-dev nlohmann-json3-dev libfmt-dev
   # dense kernels for CHOLMOD, twice as fast as those it brings along
   libopenblas0-serial
   # tests

@@ -46,6 +46,24 @@ TEST_F(GraphVerbs, EdgesFindsTheShortCircuitByEveryMethod) {
   }
 }
 
+TEST_F(GraphVerbs, EdgesJoinsPoints) {
+  std::string text = "x,y,z\n";
+  for (int v = 0; v < 5; ++v) text += std::to_string(v) + ",0,1\n";
+  write_text(folder / "points.csv", text);
+  const auto rows = [&](const std::string& flag) {
+    return run_ok("edges points.csv -o - --keep-ambiguous --method jaccard " + flag);
+  };
+  EXPECT_EQ(rows("--radius 1"), "from,to,weight\n0,1,1\n1,2,1\n2,3,1\n3,4,1\n");
+  EXPECT_THAT(run_ok("edges points.csv --neighbours 2 --verdicts -"), HasSubstr("\n1,0,2,"));
+  EXPECT_EQ(run("edges points.csv --radius 1 --neighbours 2").code, 2);
+  EXPECT_EQ(run("edges points.csv --radius 0").code, 2);
+  EXPECT_EQ(run("edges points.csv --neighbours 0").code, 2);
+  write_text(folder / "bad_points.csv", "0,0\n1,x\n");
+  const auto result = run("edges bad_points.csv --radius 1 -o out.csv");
+  EXPECT_EQ(result.code, 3);
+  EXPECT_THAT(result.err, HasSubstr("bad_points.csv:2:3: expected a coordinate"));
+}
+
 TEST_F(GraphVerbs, EmbedWritesOneRowAVertex) {
   make_strip();
   for (const std::string method : {"commute-time", "heat", "eigenmaps"}) {
