@@ -1,73 +1,17 @@
 #include <array>
 #include <cctype>
-#include <cmath>
-#include <limits>
+#include <string>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 
 #include "isotherm/base/csv.hpp"
 #include "isotherm/geometry/range_file.hpp"
+#include "network_builder.hpp"
+#include "range_fields.hpp"
+#include "range_row_reader.hpp"
 
 namespace isotherm::geometry {
 namespace {
-
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
-// Collects nodes by name and keeps the positions that are given.
-class NetworkBuilder {
- public:
-  Index node(std::string_view name) {
-    const auto [entry, added] =
-        indices_.try_emplace(std::string(name), static_cast<Index>(network_.names.size()));
-    if (added) {
-      network_.names.push_back(entry->first);
-      positions_.push_back({kUnknown, kUnknown, kUnknown});
-    }
-    return entry->second;
-  }
-
-  // False if the node already has a position.
-  bool place(Index node, const std::array<double, 3>& position) {
-    if (!std::isnan(positions_[node][0])) return false;
-    positions_[node] = position;
-    return true;
-  }
-
-  void add_landmark(Index node) {
-    if (landmark_.size() < network_.names.size()) landmark_.resize(network_.names.size(), false);
-    landmark_[node] = true;
-  }
-
-  void add_range(const RangeMeasurement& range) { network_.ranges.push_back(range); }
-
-  bool has_ranges() const { return !network_.ranges.empty(); }
-  std::size_t range_count() const { return network_.ranges.size(); }
-
-  RangeNetwork finish(int dimension) {
-    network_.dimension = dimension;
-    network_.positions.resize(dimension, static_cast<Eigen::Index>(positions_.size()));
-    for (std::size_t v = 0; v < positions_.size(); ++v) {
-      for (int i = 0; i < dimension; ++i) network_.positions(i, v) = positions_[v][i];
-    }
-    for (std::size_t v = 0; v < landmark_.size(); ++v) {
-      if (landmark_[v]) network_.landmarks.push_back(static_cast<Index>(v));
-    }
-    return std::move(network_);
-  }
-
- private:
-  RangeNetwork network_;
-  std::vector<std::array<double, 3>> positions_;
-  std::vector<bool> landmark_;
-  std::unordered_map<std::string, Index> indices_;
-};
-
-double distance_field(TextReader& text) {
-  const double distance = text.number("a distance");
-  if (distance < 0.0) text.fail("expected a distance >= 0");
-  return distance;
-}
 
 double variance_field(TextReader& text) {
   const double variance = text.number("a variance");
@@ -77,14 +21,6 @@ double variance_field(TextReader& text) {
 
 bool starts_with_letter(std::string_view token) {
   return std::isalpha(static_cast<unsigned char>(token.front())) != 0;
-}
-
-// Goes to the next line that is neither empty nor a comment.
-bool next_content_line(TextReader& text) {
-  while (text.next_line()) {
-    if (!text.at_line_end() && !text.line().starts_with('#')) return true;
-  }
-  return false;
 }
 
 class PyfgReader {
@@ -188,25 +124,6 @@ RangeNetwork read_librsf(TextReader& text, ReadReport& report) {
   return builder.finish(2);
 }
 
-// i j lower upper [names ...]
-RangeNetwork read_intervals(TextReader& text, ReadReport& report) {
-  NetworkBuilder builder;
-  while (next_content_line(text)) {
-    RangeMeasurement measurement;
-    measurement.from = builder.node(std::to_string(text.unsigned_integer("the first node")));
-    measurement.to = builder.node(std::to_string(text.unsigned_integer("the second node")));
-    const double lower = distance_field(text);
-    const double upper = distance_field(text);
-    if (upper < lower) text.fail("expected an upper bound not below the lower one");
-    measurement.distance = 0.5 * lower + 0.5 * upper;
-    measurement.variance = (upper - lower) * (upper - lower) / 12.0;
-    measurement.line = text.line_number();
-    builder.add_range(measurement);
-    ++report.records["interval"];
-  }
-  return builder.finish(3);
-}
-
 RangeNetwork read_csv(TextReader& text, ReadReport& report) {
   CsvReader csv(std::move(text));
   const auto from = csv.column("from", 0);
@@ -247,7 +164,7 @@ std::string_view first_content(std::string_view text) {
   return {};
 }
 
-RangeNetwork read_by_content(TextReader& text, ReadReport& report) {
+RangeNetwork read_by_content(TextReader& text, const ReadOptions& options, ReadReport& report) {
   const auto start = first_content(text.peek());
   if (start.empty()) return {};
   if (start.find(',') != std::string_view::npos) {
@@ -262,8 +179,9 @@ RangeNetwork read_by_content(TextReader& text, ReadReport& report) {
     report.format = "pyfg";
     return PyfgReader(text, report).run();
   }
-  report.format = "intervals";
-  return read_intervals(text, report);
+  // The first row decides: here a row that differs is an error, with its line.
+  return read_range_rows(text, detect_range_rows(start.substr(0, start.find('\n'))), options,
+                         report);
 }
 
 }  // namespace
@@ -272,7 +190,7 @@ RangeFile read_ranges(TextReader& reader, const ReadOptions& options) {
   options.validate();
   RangeFile file;
   file.report.path = reader.path();
-  file.network = read_by_content(reader, file.report);
+  file.network = read_by_content(reader, options, file.report);
   if (file.report.lines == 0) file.report.lines = reader.line_number();
   if (file.network.ranges.empty()) {
     throw ParseError({file.report.path, 0, 0}, "",

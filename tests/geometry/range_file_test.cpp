@@ -1,5 +1,6 @@
 #include "isotherm/geometry/range_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -74,6 +75,38 @@ TEST(ReadRanges, LibrsfAndIntervals) {
   EXPECT_EQ(intervals.network.ranges[1].distance, 1.5);
 }
 
+TEST(ReadRanges, BeaconsHeardByAMovingTag) {
+  const auto file =
+      parse("  3.858e+003\t 2.0e+000 5.0e+000 6.5e+001\t\n  3.859e+003 2.0e+000 6.0e+000 35.5\n");
+  EXPECT_EQ(file.report.format, "beacons");
+  EXPECT_THAT(file.network.names, ElementsAre("0", "L5", "1", "L6"));
+  EXPECT_THAT(file.network.landmarks, ElementsAre(1, 3));
+  EXPECT_EQ(file.network.ranges[0].timestamp, 3858.0);
+  EXPECT_EQ(file.network.ranges[1].distance, 35.5);
+}
+
+TEST(ReadRanges, TimesOfFlight) {
+  std::string diagnostics;
+  for (int k = 0; k < 18; ++k) diagnostics += " -1.5";
+  const auto file = parse("0.5 12 8" + diagnostics + "\n0.25 8 14" + diagnostics + "\n");
+  EXPECT_EQ(file.report.format, "flight-times");
+  EXPECT_THAT(file.network.names, ElementsAre("12", "8", "14"));
+  EXPECT_EQ(file.network.ranges[0].distance, 0.5 * 299.792458);
+  EXPECT_EQ(file.network.ranges[1].from, 1);
+}
+
+TEST(ReadRanges, LeavesOutTimesOfFlightBelowZero) {
+  std::string diagnostics;
+  for (int k = 0; k < 18; ++k) diagnostics += " 0";
+  const std::string text = "0.5 12 8" + diagnostics + "\n-289 8 14" + diagnostics + "\n";
+  const auto file = parse(text);
+  EXPECT_EQ(file.network.ranges.size(), 1u);
+  EXPECT_EQ(file.report.records.at("flight time"), 2u);
+  EXPECT_EQ(file.report.repairs.at("negative time of flight"), 1u);
+  TextReader reader("f", text);
+  EXPECT_THROW(read_ranges(reader, {.strict = true}), ParseError);
+}
+
 TEST(ReadRanges, LocatesErrors) {
   const std::string expected =
       "; expected PyFG, rows of from,to,range, libRSF or distance intervals";
@@ -88,6 +121,9 @@ TEST(ReadRanges, LocatesErrors) {
             "f:2:11: vertex already given (got 'L0')");
   EXPECT_EQ(error_of("1 2 3 2\n"),
             "f:1:7: expected an upper bound not below the lower one (got '2')");
+  EXPECT_EQ(error_of("10.5 1 2 3.5\n10.5 1 2.5 3.5\n"),
+            "f:2:8: expected the id of the beacon, a whole number (got '2.5')");
+  EXPECT_EQ(error_of("10.5 1 2 3.5\n10.5 1 2 -3\n"), "f:2:10: expected a distance >= 0 (got '-3')");
 }
 
 struct RealFile {
@@ -111,6 +147,8 @@ INSTANTIATE_TEST_SUITE_P(
     Files, RealRanges,
     testing::Values(RealFile{"snl/plaza1/plaza1.pyfg", "pyfg", 9662, 3326},
                     RealFile{"snl/single_drone/single_drone.pyfg", "pyfg", 1755, 1754},
+                    RealFile{"snl/plaza1/Plaza1_TD.txt", "beacons", 3533, 3529},
+                    RealFile{"snl/acshi_uwb8/dataset4.txt.gz", "flight-times", 8, 28660},
                     RealFile{"snl/labyrinth_uwb/Indoor_UWB_Input.txt", "librsf", 237, 233},
                     RealFile{"snl/mdjeep_sensorSet1/sensor056.nmr", "intervals", 56, 191},
                     RealFile{"snl/mdjeep_sensorSet1/sensor073.nmr", "intervals", 73, 625},

@@ -5,26 +5,10 @@
 #include <string_view>
 #include <vector>
 
+#include "isotherm/geometry/range_rows.hpp"
+
 namespace isotherm::slam {
 namespace {
-
-bool is_separator(char c) { return c == ' ' || c == '\t' || c == ',' || c == '\r'; }
-
-std::vector<std::string_view> tokens_of(std::string_view line) {
-  std::vector<std::string_view> tokens;
-  std::size_t begin = 0;
-  while (begin < line.size()) {
-    if (is_separator(line[begin])) {
-      ++begin;
-      continue;
-    }
-    std::size_t end = begin;
-    while (end < line.size() && !is_separator(line[end])) ++end;
-    tokens.push_back(line.substr(begin, end - begin));
-    begin = end;
-  }
-  return tokens;
-}
 
 bool contains(const std::vector<std::string_view>& tokens, std::string_view wanted) {
   return std::find(tokens.begin(), tokens.end(), wanted) != tokens.end();
@@ -46,6 +30,7 @@ bool has_named_vertex(const std::vector<std::string_view>& tokens) {
 FileFormat format_of_record(const std::vector<std::string_view>& tokens) {
   const auto tag = tokens.front();
   if (tag == "range2" || tag == "odom2diff") return FileFormat::librsf;
+  if (tag == "odom2" || tag == "loop") return FileFormat::places;
   if (tag == "point2") return FileFormat::points;
   const bool known = tag.starts_with("VERTEX") || tag.starts_with("EDGE") || tag == "FIX";
   if (!known) return FileFormat::unknown;
@@ -73,6 +58,8 @@ FileFormat format_of_row(const std::vector<std::string_view>& tokens, bool comma
       return FileFormat::planar;
     case 8:
       return commas ? FileFormat::euroc : FileFormat::tum;
+    case 11:
+      return commas ? FileFormat::euroc : FileFormat::edge_rows;
     case 12:
     case 13:
       return commas ? FileFormat::euroc : FileFormat::kitti;
@@ -84,7 +71,7 @@ FileFormat format_of_row(const std::vector<std::string_view>& tokens, bool comma
 FileFormat format_of_line(std::string_view line) {
   if (line.starts_with("%%MatrixMarket")) return FileFormat::matrix_market;
   if (line.starts_with("#timestamp")) return FileFormat::euroc;
-  const auto tokens = tokens_of(line);
+  const auto tokens = split(line, " \t,\r");
   if (tokens.empty() || tokens.front().front() == '#') return FileFormat::unknown;
   const bool commas = line.find(',') != std::string_view::npos;
   double number = 0.0;
@@ -93,37 +80,19 @@ FileFormat format_of_line(std::string_view line) {
   return record != FileFormat::unknown || !commas ? record : format_of_header(tokens);
 }
 
-// i j lower upper, vertices counted from 1, perhaps followed by names.
-bool is_interval(const std::vector<std::string_view>& tokens) {
-  std::uint64_t i = 0;
-  std::uint64_t j = 0;
-  double lower = 0.0;
-  double upper = 0.0;
-  double number = 0.0;
-  return tokens.size() >= 4 && parse_unsigned(tokens[0], i) && parse_unsigned(tokens[1], j) &&
-         parse_number(tokens[2], lower) && parse_number(tokens[3], upper) && i > 0 && j > 0 &&
-         i != j && lower >= 0.0 && lower <= upper && upper > 0.0 &&
-         (tokens.size() == 4 || !parse_number(tokens[4], number));
-}
-
-// A planar trajectory may start like an interval; that all rows look like one
-// would be a coincidence.
-bool has_only_intervals(std::string_view text) {
-  std::size_t rows = 0;
-  while (!text.empty()) {
-    const auto newline = text.find('\n');
-    // The last line may be cut off.
-    if (newline == std::string_view::npos && rows > 0) break;
-    const auto line = text.substr(0, newline);
-    const auto tokens = tokens_of(line);
-    if (!tokens.empty() && tokens.front().front() != '#') {
-      if (line.find(',') != std::string_view::npos || !is_interval(tokens)) return false;
-      ++rows;
-    }
-    if (newline == std::string_view::npos) break;
-    text.remove_prefix(newline + 1);
+// Rows of ranges without tags or names.
+FileFormat format_of_rows(std::string_view text) {
+  switch (geometry::detect_range_rows(text)) {
+    case geometry::RangeRows::intervals:
+      return FileFormat::intervals;
+    case geometry::RangeRows::beacons:
+      return FileFormat::beacons;
+    case geometry::RangeRows::flight_times:
+      return FileFormat::flight_times;
+    case geometry::RangeRows::none:
+      break;
   }
-  return rows > 0;
+  return FileFormat::unknown;
 }
 
 }  // namespace
@@ -132,11 +101,15 @@ FileContent content_of(FileFormat format) {
   switch (format) {
     case FileFormat::g2o:
     case FileFormat::toro:
+    case FileFormat::edge_rows:
+    case FileFormat::places:
       return FileContent::pose_graph;
     case FileFormat::pyfg:
     case FileFormat::ranges:
     case FileFormat::librsf:
     case FileFormat::intervals:
+    case FileFormat::beacons:
+    case FileFormat::flight_times:
       return FileContent::ranges;
     case FileFormat::tum:
     case FileFormat::kitti:
@@ -155,7 +128,8 @@ FileContent content_of(FileFormat format) {
 
 FileFormat detect_format(TextReader& reader) {
   std::string_view rest = reader.peek();
-  if (has_only_intervals(rest)) return FileFormat::intervals;
+  const auto rows = format_of_rows(rest);
+  if (rows != FileFormat::unknown) return rows;
   while (!rest.empty()) {
     const auto newline = rest.find('\n');
     const auto format = format_of_line(rest.substr(0, newline));

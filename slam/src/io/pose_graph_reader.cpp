@@ -9,6 +9,7 @@
 #include "information_check.hpp"
 #include "isotherm/slam/io/file_format.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
+#include "place_reader.hpp"
 #include "pose_fields.hpp"
 
 namespace isotherm::slam {
@@ -66,7 +67,9 @@ class Reader {
   }
 
   PoseGraphFile run() {
-    named_ = detect_format(text_) == FileFormat::pyfg;
+    const auto format = detect_format(text_);
+    named_ = format == FileFormat::pyfg;
+    untagged_ = format == FileFormat::edge_rows;
     while (text_.next_line()) read_line();
     finish();
     return std::move(file_);
@@ -74,20 +77,24 @@ class Reader {
 
  private:
   void read_line() {
+    if (text_.at_line_end()) return;
+    if (untagged_ && !text_.line().starts_with('#')) return read_known(Tag::edge_se2);
     const auto tag = text_.word();
-    if (tag.empty()) return;
     if (tag.front() == '#') {
       file_.other_lines.emplace_back(text_.line());
       return;
     }
     for (const auto& [name, value] : kTags) {
       if (tag != name) continue;
-      ++counts_[static_cast<std::size_t>(value)];
-      read_record(value);
-      text_.expect_line_end();
-      return;
+      return read_known(value);
     }
     keep_unknown(tag);
+  }
+
+  void read_known(Tag tag) {
+    ++counts_[static_cast<std::size_t>(tag)];
+    read_record(tag);
+    text_.expect_line_end();
   }
 
   void read_record(Tag tag) {
@@ -242,7 +249,7 @@ class Reader {
                           counts_[static_cast<std::size_t>(Tag::edge2)] +
                           counts_[static_cast<std::size_t>(Tag::edge3)] >
                       0;
-    report.format = named_ ? "pyfg" : toro ? "toro" : "g2o";
+    report.format = named_ ? "pyfg" : untagged_ ? "edge-rows" : toro ? "toro" : "g2o";
     if (spatial_.empty()) {
       file_.graph = finish_graph(std::move(planar_), fixed_, options_, report);
     } else {
@@ -257,7 +264,8 @@ class Reader {
   GraphDraft<Pose2> planar_;
   GraphDraft<Pose3> spatial_;
   std::vector<FixedVertex> fixed_;
-  bool named_ = false;  // PyFG: time stamps, names for ids, covariances
+  bool untagged_ = false;  // every line is an EDGE_SE2 without its tag
+  bool named_ = false;     // PyFG: time stamps, names for ids, covariances
   std::array<std::uint64_t, kTags.size()> counts_{};
 };
 
@@ -265,6 +273,7 @@ class Reader {
 
 PoseGraphFile read_pose_graph(TextReader& reader, const ReadOptions& options) {
   options.validate();
+  if (detect_format(reader) == FileFormat::places) return read_places(reader);
   return Reader(reader, options).run();
 }
 

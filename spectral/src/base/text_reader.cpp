@@ -225,4 +225,15 @@ void TextReader::fail_expected(std::string_view what, std::string_view kind) {
   fail("expected " + std::string(what) + ", " + std::string(kind));
 }
 
+std::vector<std::string_view> split(std::string_view line, std::string_view separators) {
+  std::vector<std::string_view> parts;
+  auto begin = line.find_first_not_of(separators);
+  while (begin != std::string_view::npos) {
+    const auto end = std::min(line.find_first_of(separators, begin), line.size());
+    parts.push_back(line.substr(begin, end - begin));
+    begin = line.find_first_not_of(separators, end);
+  }
+  return parts;
+}
+
 }  // namespace isotherm

@@ -114,6 +114,18 @@ TEST(ReadPoseGraph, PlanarRecords) {
 
 // Entry k of the upper triangle by rows is k, plus 100 on the diagonal to make
 // the matrix definite; the sum of every product was worked out by hand.
+TEST(ReadPoseGraph, EdgesWithoutTags) {
+  const auto file =
+      parse("# from to x y theta\n0 1 1.5 0 0.5 4 1 2 5 3 6\n1 2 1 0 0 4 0 0 5 0 6\n");
+  EXPECT_EQ(file.report.format, "edge-rows");
+  const auto& graph = std::get<PoseGraph<Pose2>>(file.graph);
+  ASSERT_EQ(graph.constraint_count(), 2);
+  EXPECT_EQ(graph.constraints[0].T_from_to.translation()[0], 1.5);
+  EXPECT_EQ(graph.constraints[0].information(0, 2), 2.0);
+  EXPECT_EQ(graph.constraints[0].information(1, 2), 3.0);
+  EXPECT_EQ(graph.constraints[0].line, 2u);
+}
+
 TEST(ReadPoseGraph, SpatialInformationKeepsItsOrder) {
   const auto graph = spatial(
       "EDGE_SE3:QUAT 0 1 0 0 0 0 0 0 1 "

@@ -20,7 +20,11 @@ struct RangeFile {
 ///   `sigma` (metres);
 /// - libRSF: `range2` lines; the moving node of measurement k is called `k`;
 /// - distance intervals, `i j lower upper` a row (distance geometry's nmr): the
-///   middle, with the variance of the uniform distribution.
+///   middle, with the variance of the uniform distribution;
+/// - radio beacons, `time tag beacon range` a row: the tag at measurement k is
+///   called `k`, beacons `L` and their number;
+/// - times of flight, `microseconds node node` and diagnostics a row: distances at
+///   the speed of light, delays inside the radios included.
 ///
 /// Records of other kinds are counted in `report.skipped`.
 /// @throws FileError if the file cannot be read, ParseError if it is malformed or

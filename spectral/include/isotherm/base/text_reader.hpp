@@ -117,4 +117,7 @@ bool parse_number(std::string_view text, double& value) noexcept;
 /// `text` as an integer in [0, 2^64), or nothing.
 bool parse_unsigned(std::string_view text, std::uint64_t& value) noexcept;
 
+/// The stretches of `line` between runs of `separators`.
+std::vector<std::string_view> split(std::string_view line, std::string_view separators);
+
 }  // namespace isotherm

@@ -12,23 +12,29 @@ enum class FileFormat {
   unknown,
   g2o,
   toro,
+  edge_rows,  ///< rows of from to x y theta and the information's upper triangle
+  places,     ///< libRSF's `odom2` and `loop` lines: velocities and recognised places
   pyfg,
   tum,
   kitti,
   euroc,
-  planar,     ///< rows of time x y theta
-  points,     ///< libRSF's `point2` lines: positions without headings
-  ranges,     ///< rows of from,to,range[,sigma]
-  librsf,     ///< libRSF's `range2` lines
-  intervals,  ///< rows of i j lower upper
-  edges,      ///< rows of from to [weight]
+  planar,        ///< rows of time x y theta
+  points,        ///< libRSF's `point2` lines: positions without headings
+  ranges,        ///< rows of from,to,range[,sigma]
+  librsf,        ///< libRSF's `range2` lines
+  intervals,     ///< rows of i j lower upper
+  beacons,       ///< rows of time tag beacon range
+  flight_times,  ///< rows of microseconds node node and radio diagnostics
+  edges,         ///< rows of from to [weight]
   matrix_market,
 };
 
-constexpr std::array<EnumName<FileFormat>, 14> enum_names(FileFormat) {
+constexpr std::array<EnumName<FileFormat>, 18> enum_names(FileFormat) {
   return {{{FileFormat::unknown, "unknown"},
            {FileFormat::g2o, "g2o"},
            {FileFormat::toro, "toro"},
+           {FileFormat::edge_rows, "edge-rows"},
+           {FileFormat::places, "places"},
            {FileFormat::pyfg, "pyfg"},
            {FileFormat::tum, "tum"},
            {FileFormat::kitti, "kitti"},
@@ -38,6 +44,8 @@ constexpr std::array<EnumName<FileFormat>, 14> enum_names(FileFormat) {
            {FileFormat::ranges, "ranges"},
            {FileFormat::librsf, "librsf"},
            {FileFormat::intervals, "intervals"},
+           {FileFormat::beacons, "beacons"},
+           {FileFormat::flight_times, "flight-times"},
            {FileFormat::edges, "edges"},
            {FileFormat::matrix_market, "matrix-market"}}};
 }

@@ -29,8 +29,9 @@ struct PoseGraphFile {
 };
 
 /// Reads a pose graph, telling the format by its content: g2o with SE2 or
-/// SE3:QUAT records, TORO, or the poses of a PyFG file, whose names become GTSAM
-/// keys. `path` may be "-" for standard input, and compressed.
+/// SE3:QUAT records, TORO, the poses of a PyFG file, whose names become GTSAM
+/// keys, or libRSF's velocities and recognised places. `path` may be "-" for standard input, and
+/// compressed.
 ///
 /// One pass; memory is a small multiple of the graph's.
 /// @throws FileError if the file cannot be read, ParseError if it is malformed,

@@ -1,0 +1,18 @@
+#include "range_fields.hpp"
+
+namespace isotherm::geometry {
+
+bool next_content_line(TextReader& text) {
+  while (text.next_line()) {
+    if (!text.at_line_end() && !text.line().starts_with('#')) return true;
+  }
+  return false;
+}
+
+double distance_field(TextReader& text) {
+  const double distance = text.number("a distance");
+  if (distance < 0.0) text.fail("expected a distance >= 0");
+  return distance;
+}
+
+}  // namespace isotherm::geometry
