@@ -7,6 +7,10 @@ cd "$(dirname "$0")/.."
 
 wanted=tests/interop/requirements.txt
 stamp=.venv/installed.txt
+if ! python3 -c 'import ensurepip' 2>/dev/null; then
+  echo "python-env: needs Python with venv (Debian packages python3 and python3-venv)" >&2
+  exit 1
+fi
 if ! cmp -s "$wanted" "$stamp"; then
   python3 -m venv .venv >&2
   .venv/bin/pip install --quiet --disable-pip-version-check -r "$wanted" >&2
