@@ -2,16 +2,20 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <variant>
 
 #include <fmt/format.h>
 
 #include "console.hpp"
+#include "isotherm/slam/ground_truth.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm/slam/trusted_edges.hpp"
 #include "isotherm/spectral/verdict_file.hpp"
 #include "option_verb.hpp"
 #include "pose_graph_input.hpp"
+#include "report/pose_graph_report.hpp"
+#include "report/report_flags.hpp"
 #include "verbs.hpp"
 
 namespace isotherm::apps {
@@ -84,6 +88,8 @@ struct PruneVerb : OptionVerb<PruneOptions> {
   std::string preset;
   std::string trusted;
   bool keep_ambiguous = false;
+  ReportFlags explain;
+  GroundTruthSource truth;
 
   int run() {
     if (preset == "datta2016") options.heat = datta2016();
@@ -91,20 +97,31 @@ struct PruneVerb : OptionVerb<PruneOptions> {
     options.threads = flags.threads;
     options.progress = progress_line(flags);
     auto file = read_input_graph(input, flags);
-    const auto result = std::visit(
-        [&](auto& graph) {
-          const auto roles =
-              trusted.empty() ? edge_roles(graph) : read_trusted_edges(trusted, graph);
-          auto pruned = prune(graph, roles, options);
-          graph = apply_verdicts(graph, pruned.verdicts, keep_ambiguous);
-          return pruned;
-        },
-        file.graph);
+    std::visit([&](auto& graph) { run_on(graph, file); }, file.graph);
+    return kOk;
+  }
+
+  // `graph` is the one in `file`.
+  template <class Pose>
+  void run_on(PoseGraph<Pose>& graph, const PoseGraphFile& file) {
+    const auto roles = trusted.empty() ? edge_roles(graph) : read_trusted_edges(trusted, graph);
+    const auto result = prune(graph, roles, options);
     report(result);
+    std::optional<Report> page;
+    if (explain.wanted()) page = explained(graph, roles, result);
+    graph = apply_verdicts(graph, result.verdicts, keep_ambiguous);
     if (!output.empty()) write_g2o(output, file);
     if (!verdicts.empty()) spectral::write_verdicts(verdicts, result.verdicts);
     write_json(flags.json, to_json(result, options));
-    return kOk;
+    if (page) write_report(explain, *page);
+  }
+
+  template <class Pose>
+  Report explained(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                   const PruneResult& result) const {
+    PruneRun<Pose> run{file_title(input), options, keep_ambiguous, {}};
+    if (!truth.path.empty()) run.truth = read_ground_truth(graph, truth);
+    return pose_graph_report(graph, roles, result, run);
   }
 
   void report(const PruneResult& result) const {
@@ -142,6 +159,13 @@ Verb add_prune(CLI::App& root) {
       ->type_name("FILE");
   verb->add_option("--preset", prune->preset, "datta2016: heat as the paper states it")
       ->check(CLI::IsMember({"datta2016"}));
+  prune->explain.add_to(*verb);
+  verb->add_option("--ground-truth", prune->truth.path,
+                   "true poses, for the trajectory error in the report")
+      ->type_name("FILE");
+  verb->add_option("--timestamps", prune->truth.timestamps,
+                   "time of each pose in seconds, one a line, where the truth needs it")
+      ->type_name("FILE");
   prune->add_flags(*verb);
   return {verb, [prune] { return prune->run(); }};
 }

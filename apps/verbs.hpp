@@ -14,6 +14,7 @@ Verb add_optimize(CLI::App& root);
 Verb add_label(CLI::App& root);
 Verb add_edges(CLI::App& root);
 Verb add_embed(CLI::App& root);
+Verb add_report(CLI::App& root);
 Verb add_eval(CLI::App& root);
 Verb add_eval_loops(CLI::App& eval);
 Verb add_eval_ate(CLI::App& eval);

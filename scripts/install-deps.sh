@@ -17,11 +17,16 @@ packages=(
   libbenchmark-dev
 )
 
+# What only the tests of the report viewer need, as `command package`: Node may come
+# from elsewhere than Debian, and then brings npm along.
+test_commands=("chromium chromium" "node nodejs" "npm npm")
+
 usage() {
   cat <<'USAGE'
-usage: scripts/install-deps.sh [--list]
+usage: scripts/install-deps.sh [--tests] [--list]
 
-Installs the Debian packages Isotherm is built and tested with.
+Installs the Debian packages Isotherm is built with.
+  --tests  also those that only the tests need: a browser and Node
   --list   only print which packages are missing
 USAGE
 }
@@ -32,15 +37,23 @@ missing_packages() {
     dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q '^install ok installed$' ||
       echo "$package"
   done
+  if $tests; then
+    for package in "${test_commands[@]}"; do
+      command -v "${package% *}" >/dev/null || echo "${package#* }"
+    done
+  fi
 }
 
 list_only=false
-case "${1:-}" in
-  --list) list_only=true ;;
-  --help | -h) usage; exit 0 ;;
-  '') ;;
-  *) usage >&2; exit 2 ;;
-esac
+tests=false
+for argument in "$@"; do
+  case "$argument" in
+    --list) list_only=true ;;
+    --tests) tests=true ;;
+    --help | -h) usage; exit 0 ;;
+    *) usage >&2; exit 2 ;;
+  esac
+done
 
 if ! command -v apt-get >/dev/null; then
   echo "install-deps: apt-get not found; install these yourself: ${packages[*]}" >&2

@@ -4,6 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-scripts/install-deps.sh
+scripts/install-deps.sh --tests
+scripts/viewer-env.sh
 scripts/build.sh dev
 ctest --preset dev "$@"

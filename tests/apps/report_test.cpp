@@ -1,0 +1,168 @@
+// The report of a run, as page, document and picture.
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "run_command.hpp"
+
+namespace {
+
+using isotherm_test::CommandTest;
+using isotherm_test::read_text;
+using isotherm_test::write_text;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+using Json = nlohmann::json;
+
+// Bytes of a base64 text, digit by digit; independent of the encoder.
+std::vector<std::uint8_t> decoded(const std::string& text) {
+  const std::string_view digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::vector<std::uint8_t> bytes;
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    bits = bits << 6 | static_cast<std::uint32_t>(digits.find(c));
+    count += 6;
+    if (count < 8) continue;
+    count -= 8;
+    bytes.push_back(static_cast<std::uint8_t>(bits >> count));
+  }
+  return bytes;
+}
+
+template <class Number>
+std::vector<Number> numbers(const Json& packed, const char* type) {
+  const auto bytes = decoded(packed.at(type).get<std::string>());
+  std::vector<Number> values(bytes.size() / sizeof(Number));
+  std::copy_n(bytes.begin(), values.size() * sizeof(Number),
+              reinterpret_cast<std::uint8_t*>(values.data()));
+  return values;
+}
+
+// Five poses in a row, numbered from 2^63; loop 0-4 is right, loop 0-3 is far off.
+constexpr std::uint64_t kFirst = 1ULL << 63;
+constexpr std::string_view kFive =
+    "VERTEX_SE2 9223372036854775808 0 0 0\n"
+    "VERTEX_SE2 9223372036854775809 1 0 0\n"
+    "VERTEX_SE2 9223372036854775810 2 0 0\n"
+    "VERTEX_SE2 9223372036854775811 3 0 0\n"
+    "VERTEX_SE2 9223372036854775812 4 0 0\n"
+    "EDGE_SE2 9223372036854775808 9223372036854775809 1 0 0 100 0 0 100 0 100\n"
+    "EDGE_SE2 9223372036854775809 9223372036854775810 1 0 0 100 0 0 100 0 100\n"
+    "EDGE_SE2 9223372036854775810 9223372036854775811 1 0 0 100 0 0 100 0 100\n"
+    "EDGE_SE2 9223372036854775811 9223372036854775812 1 0 0 100 0 0 100 0 100\n"
+    "EDGE_SE2 9223372036854775808 9223372036854775812 4 0 0 100 0 0 100 0 100\n"
+    "EDGE_SE2 9223372036854775808 9223372036854775811 -9 5 1 100 0 0 100 0 100\n";
+
+class Report : public CommandTest {
+ protected:
+  Json document(const std::string& arguments) const {
+    run_ok(arguments + " --report report.json");
+    return Json::parse(read_text(folder / "report.json"));
+  }
+};
+
+TEST_F(Report, DocumentHoldsEveryCandidateExactly) {
+  write_text(folder / "five.g2o", std::string(kFive));
+  const auto json = document("prune five.g2o --method chi2");
+  EXPECT_EQ(json["schema"], "isotherm.report/1");
+  EXPECT_EQ(json["kind"], "pose_graph");
+  EXPECT_EQ(json["title"], "five.g2o");
+  EXPECT_THAT(numbers<std::uint64_t>(json["nodes"]["names"], "u64"),
+              ElementsAre(kFirst, kFirst + 1, kFirst + 2, kFirst + 3, kFirst + 4));
+  const auto& all = json["candidates"];
+  EXPECT_EQ(all["count"], 2);
+  EXPECT_THAT(numbers<std::uint32_t>(all["edge"], "u32"), ElementsAre(4, 5));
+  EXPECT_THAT(numbers<std::uint32_t>(all["line"], "u32"), ElementsAre(10, 11));
+  EXPECT_THAT(numbers<std::int32_t>(all["from"], "i32"), ElementsAre(0, 0));
+  EXPECT_THAT(numbers<std::int32_t>(all["to"], "i32"), ElementsAre(4, 3));
+  EXPECT_THAT(numbers<std::uint8_t>(all["verdict"], "u8"), ElementsAre(0, 1));
+  const auto score = numbers<float>(all["score"], "f32");
+  const auto threshold = numbers<float>(all["threshold"], "f32");
+  EXPECT_LT(score[0], threshold[0]);
+  EXPECT_GT(score[1], threshold[1]);
+  // Before: as in the file, relative to the first pose.
+  EXPECT_THAT(numbers<float>(json["layouts"][0]["positions"], "f32"),
+              ElementsAre(0, 0, 1, 0, 2, 0, 3, 0, 4, 0));
+}
+
+TEST_F(Report, TrajectoryErrorIsThatOfEval) {
+  run_ok("simulate city --poses 300 --loops 100 --seed 5 -o city.g2o --ground-truth gt.g2o");
+  const auto json = document("prune city.g2o --ground-truth gt.g2o -o kept.g2o");
+  run_ok("optimize kept.g2o -o map.g2o");
+  const auto ate = Json::parse(run_ok("eval ate map.g2o gt.g2o --align se --json -"));
+  const auto errors = numbers<float>(json["layouts"][1]["errors"], "f32");
+  ASSERT_EQ(errors.size(), 300U);
+  EXPECT_NEAR(*std::max_element(errors.begin(), errors.end()), ate["max"].get<double>(), 1e-5);
+}
+
+TEST_F(Report, PageIsWhatTheSavedDocumentMakes) {
+  write_text(folder / "five.g2o", std::string(kFive));
+  document("prune five.g2o --method chi2");
+  run_ok("report report.json -o page.html");
+  const auto page = read_text(folder / "page.html");
+  EXPECT_THAT(page, testing::StartsWith("<!doctype html>"));
+  EXPECT_THAT(page, HasSubstr("default-src 'none'"));
+  EXPECT_THAT(page, HasSubstr("isotherm.report/1"));
+  EXPECT_THAT(page, Not(HasSubstr("__ISOTHERM_REPORT__")));
+}
+
+TEST_F(Report, HostileNamesCannotLeaveTheData) {
+  const std::string name = "<img src=x onerror=alert(1)>.g2o";
+  write_text(folder / name, std::string(kFive));
+  run_ok("prune '" + name + "' --method chi2 --report page.html --svg map.svg");
+  const auto page = read_text(folder / "page.html");
+  EXPECT_THAT(page, HasSubstr("\\u003cimg src=x onerror=alert(1)>.g2o"));
+  EXPECT_THAT(page, Not(HasSubstr("<img")));
+  EXPECT_THAT(read_text(folder / "map.svg"), HasSubstr("&lt;img src=x onerror=alert(1)&gt;.g2o"));
+}
+
+TEST_F(Report, NameThatIsNotUtf8IsReplaced) {
+  write_text(folder / "caf\xe9.g2o", std::string(kFive));
+  EXPECT_EQ(document("prune 'caf\xe9.g2o' --method chi2")["title"], "caf\xef\xbf\xbd.g2o");
+}
+
+TEST_F(Report, SvgHasALayerAKindAndALegend) {
+  write_text(folder / "five.g2o", std::string(kFive));
+  run_ok("prune five.g2o --method chi2 --svg map.svg");
+  const auto svg = read_text(folder / "map.svg");
+  EXPECT_THAT(svg, testing::StartsWith("<svg xmlns=\"http://www.w3.org/2000/svg\""));
+  EXPECT_THAT(svg, HasSubstr("odometry (4)"));
+  EXPECT_THAT(svg, HasSubstr("kept loops (1)"));
+  EXPECT_THAT(svg, HasSubstr("pruned loops (1)"));
+  EXPECT_THAT(svg, Not(HasSubstr("ambiguous")));
+  EXPECT_THAT(svg, HasSubstr("0.5 m</text>"));
+  EXPECT_THAT(svg, testing::EndsWith("</svg>\n"));
+}
+
+TEST_F(Report, GraphWithoutLoopsHasAReport) {
+  const std::string text(kFive);
+  write_text(folder / "chain.g2o",
+             text.substr(0, text.find("EDGE_SE2 9223372036854775808 9223372036854775812")));
+  const auto json = document("prune chain.g2o --svg map.svg");
+  EXPECT_EQ(json["candidates"]["count"], 0);
+  EXPECT_EQ(json["nodes"]["count"], 5);
+}
+
+TEST_F(Report, OtherDocumentsAreRefused) {
+  write_text(folder / "five.g2o", std::string(kFive));
+  run_ok("prune five.g2o --json result.json");
+  const auto other = run("report result.json -o page.html");
+  EXPECT_EQ(other.code, 3);
+  EXPECT_THAT(other.err, HasSubstr("isotherm.report/1"));
+  write_text(folder / "broken.json", "{\"schema\": ");
+  EXPECT_EQ(run("report broken.json -o page.html").code, 3);
+  EXPECT_EQ(run("report nowhere.json -o page.html").code, 3);
+  EXPECT_FALSE(std::filesystem::exists(folder / "page.html"));
+}
+
+}  // namespace

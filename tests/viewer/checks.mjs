@@ -1,0 +1,182 @@
+// What every report must show and do.
+import assert from 'node:assert/strict';
+
+const PANELS = ['summary', 'map', 'reasons', 'table', 'scores', 'heat', 'residuals', 'errors',
+  'spectrum', 'decay', 'rounds', 'options'];
+
+const text = (page, selector) => page.$eval(selector, (element) => element.textContent);
+const settle = (page) =>
+  page.evaluate(() => new Promise((done) => {
+    requestAnimationFrame(() => requestAnimationFrame(done));
+  }));
+
+/** Every panel is there with a heading and something to see below it. */
+export async function checkPanels(page) {
+  const found = await page.$$eval('[data-panel]', (panels) =>
+    panels.map((panel) => ({
+      name: panel.dataset.panel,
+      full: panel.children.length > 1 && panel.innerText.trim() !== '',
+    })),
+  );
+  assert.deepEqual(found.map(({ name }) => name).sort(), [...PANELS].sort());
+  for (const { name, full } of found) assert.ok(full, `panel ${name} is empty`);
+}
+
+/** How many pixels of a map are drawn on, or how many lines where it is SVG. */
+export async function ink(page, map = 0) {
+  await settle(page);
+  return page.evaluate((which) => {
+    const stage = document.querySelectorAll('.stage')[which];
+    const canvas = stage.querySelector('canvas');
+    if (!canvas) {
+      return [...stage.querySelectorAll('path')]
+        .reduce((sum, path) => sum + path.getAttribute('d').split('M').length - 1, 0);
+    }
+    const copy = document.createElement('canvas');
+    [copy.width, copy.height] = [canvas.width, canvas.height];
+    const context = copy.getContext('2d');
+    context.drawImage(canvas, 0, 0);
+    const { data } = context.getImageData(0, 0, copy.width, copy.height);
+    let drawn = 0;
+    for (let k = 3; k < data.length; k += 4) if (data[k] > 0) ++drawn;
+    return drawn;
+  }, map);
+}
+
+/** Moves the pointer over the map until it meets an edge; where, and what the map says. */
+export async function findEdge(page) {
+  const stage = await page.$('.stage');
+  await stage.scrollIntoView();
+  const box = await stage.boundingBox();
+  for (let row = 1; row < 20; ++row) {
+    for (let column = 1; column < 30; ++column) {
+      const [x, y] = [box.x + (column * box.width) / 30, box.y + (row * box.height) / 20];
+      await page.mouse.move(x, y);
+      const said = await page.$eval('.tooltip', (tip) => (tip.hidden ? '' : tip.textContent));
+      if (said !== '') return { x, y, said };
+    }
+  }
+  assert.fail('the pointer met no edge on the map');
+}
+
+/** A click on an edge of the map shows its row and its reasons. */
+export async function checkClick(page) {
+  const { x, y, said } = await findEdge(page);
+  await page.mouse.click(x, y);
+  await settle(page);
+  const names = said.slice(said.indexOf(' ') + 1, said.indexOf(':'));
+  const reasons = await text(page, '#reasons dl');
+  assert.ok(reasons.includes(names), `${reasons} is not about ${names}`);
+  for (const fact of ['In the file', 'Verdict', 'Score', 'Decided', 'Conflicts with']) {
+    assert.ok(reasons.includes(fact), `no ${fact} in ${reasons}`);
+  }
+  const chosen = await page.$eval('.rows .chosen', (row) => {
+    const [box, grid] = [row.getBoundingClientRect(), row.closest('.grid').getBoundingClientRect()];
+    return {
+      ends: [1, 2].map((k) => row.children[k].textContent).join(' – '),
+      inSight: box.top >= grid.top && box.bottom <= grid.bottom,
+    };
+  });
+  assert.deepEqual(chosen, { ends: names, inSight: true });
+}
+
+/** Filters and sorting of the table do what they say. */
+export async function checkTable(page, { keep, prune }) {
+  const total = await page.$eval('.grid', (grid) => Number(grid.getAttribute('aria-rowcount')) - 1);
+  const rows = () => page.$eval('.grid', (grid) => Number(grid.getAttribute('aria-rowcount')) - 1);
+  await page.click('[data-filter="keep"]');
+  assert.equal(await rows(), total - keep);
+  await page.click('[data-filter="prune"]');
+  assert.equal(await rows(), total - keep - prune);
+  await page.click('[data-filter="keep"]');
+  await page.click('[data-filter="prune"]');
+  await page.type('[data-filter="text"]', 'prune');
+  assert.equal(await rows(), prune);
+  await page.$eval('[data-filter="text"]', (input) => {
+    input.value = '';
+    input.dispatchEvent(new Event('input'));
+  });
+  assert.equal(await rows(), total);
+
+  const score = await page.evaluateHandle(() =>
+    [...document.querySelectorAll('[role="columnheader"]')]
+      .find((head) => head.textContent === 'score'),
+  );
+  const direction = () => score.evaluate((head) => head.getAttribute('aria-sort'));
+  const top = () => page.$eval('.rows [data-candidate]', (row) => row.children[5].textContent);
+  await (await score.$('button')).click();
+  assert.equal(await direction(), 'ascending');
+  const least = await top();
+  await (await score.$('button')).click();
+  assert.equal(await direction(), 'descending');
+  assert.notEqual(await top(), least);
+}
+
+/** Switching a layer off takes it from the map, and on brings it back. */
+export async function checkLayers(page) {
+  const before = await ink(page);
+  await page.click('[data-layer="prune"]');
+  const without = await ink(page);
+  await page.click('[data-layer="prune"]');
+  assert.ok(without < before, `${without} drawn without the pruned, ${before} with them`);
+  assert.equal(await ink(page), before);
+}
+
+/** Everything can be reached and used without a pointer. */
+export async function checkKeyboard(page) {
+  await page.evaluate(() => document.activeElement?.blur());
+  const reached = new Set();
+  for (let k = 0; k < 80 && !reached.has('rows'); ++k) {
+    await page.keyboard.press('Tab');
+    const where = await page.evaluate(() => {
+      const { classList, dataset } = document.activeElement;
+      if (classList.contains('stage')) return 'map';
+      if (classList.contains('grid')) return 'rows';
+      return dataset.layer ? 'layer' : dataset.filter ? 'filter' : 'other';
+    });
+    if (where === 'map' && !reached.has('map')) await checkMapKeys(page);
+    reached.add(where);
+  }
+  assert.deepEqual(['filter', 'layer', 'map', 'rows'].filter((place) => !reached.has(place)), []);
+  const chosen = () => page.$eval('.rows .chosen', (row) => row.getAttribute('aria-rowindex'));
+  await page.keyboard.press('Home');
+  assert.equal(await chosen(), '2');
+  await page.keyboard.press('ArrowDown');
+  assert.equal(await chosen(), '3');
+  await page.keyboard.press('End');
+  const last = await page.$eval('.grid', (grid) => grid.getAttribute('aria-rowcount'));
+  assert.equal(await chosen(), last);
+}
+
+async function checkMapKeys(page) {
+  const picture = async () => {
+    await settle(page);
+    return (await page.$('.stage')).screenshot({ encoding: 'base64' });
+  };
+  const start = await picture();
+  await page.keyboard.press('ArrowLeft');
+  const moved = await picture();
+  assert.notEqual(moved, start, 'an arrow key did not move the map');
+  await page.keyboard.press('+');
+  assert.notEqual(await picture(), moved, 'plus did not zoom');
+  await page.keyboard.press('0');
+  await page.keyboard.press('Escape');
+  assert.equal(await page.$('#reasons dl'), null);
+  await page.keyboard.press('n');
+  assert.ok(await page.$('#reasons dl'), 'N chose nothing');
+}
+
+/** Nothing is wider than the page, and no text is cut off by the edge of a panel. */
+export async function checkFits(page) {
+  const tooWide = await page.evaluate(() => {
+    const width = document.documentElement.clientWidth;
+    return [...document.querySelectorAll('.panel, .panel h2, .panel h3, .panel dd, .legend, .maps')]
+      .filter((element) => element.getBoundingClientRect().right > width + 0.5)
+      .map((element) => element.id || element.className || element.tagName);
+  });
+  assert.deepEqual(tooWide, []);
+  const overflow = await page.evaluate(
+    () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
+  );
+  assert.ok(overflow <= 0, `the page scrolls sideways by ${overflow} pixels`);
+}

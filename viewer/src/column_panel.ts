@@ -1,0 +1,64 @@
+import { chart } from './chart';
+import { absent, html, panel } from './dom';
+import { capital, count } from './format';
+import type { Column, Model } from './model';
+import { VERDICTS } from './model';
+import type { Store } from './store';
+
+const WIDE = 100;
+
+/** The smallest positive number of the column and the largest finite one. */
+function extent(values: Float32Array): [number, number] {
+  let [low, high] = [Infinity, -Infinity];
+  for (const value of values) {
+    if (value > 0 && value < low) low = value;
+    if (value < Infinity && value > high) high = value;
+  }
+  return [low, high];
+}
+
+function columnChart(model: Model, store: Store, column: Column): HTMLElement {
+  const { verdict, count: size } = model.candidates;
+  const [low, high] = extent(column.values);
+  const log = high > WIDE * low && column.values.every((value) => !(value < 0));
+  const drawable = (value: number) => {
+    if (!Number.isFinite(value)) return null;
+    return log ? Math.max(value, low) : value;
+  };
+  const values = (group: number) =>
+    Array.from(column.values, (value, k) => (verdict[k] === group ? drawable(value) : null));
+  const unit = column.unit === '' ? '' : `, ${column.unit}`;
+  return html(
+    'div',
+    {},
+    html('h3', {}, capital(column.label)),
+    chart(
+      {
+        description: `${column.label} of ${count(size)} ${model.nouns.edges}`,
+        x: { label: `${model.nouns.edge} in order of the file` },
+        y: { label: column.label + unit, log },
+        xs: Array.from({ length: size }, (_, k) => k),
+        series: VERDICTS.map((name, group) => ({
+          label: name,
+          colour: `--${name}`,
+          kind: 'points',
+          values: values(group),
+        })),
+      },
+      store,
+    ),
+    html('p', { class: 'note' }, column.help),
+  );
+}
+
+/** The numbers of every candidate, in order of the file: chi-squared, residuals. */
+export function columnPanel(model: Model, store: Store): HTMLElement {
+  const charted = model.candidates.columns.filter((column) => column.charted);
+  const what = { pose_graph: 'χ²', network: 'Residuals', graph: 'Weights' }[model.kind];
+  const title = `${what} per ${model.nouns.edge}`;
+  if (model.candidates.count === 0 || charted.length === 0) {
+    return panel('residuals', title, absent(`There are no ${model.nouns.edges}.`));
+  }
+  const charts = charted.map((column) => columnChart(model, store, column));
+  return panel('residuals', title, html('div', { class: 'charts' }, ...charts));
+}

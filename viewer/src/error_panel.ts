@@ -1,0 +1,44 @@
+import { chart, type ChartSeries } from './chart';
+import { absent, html, panel } from './dom';
+import type { Layout, Model } from './model';
+import type { Store } from './store';
+
+const LOOKS = [
+  { colour: '--prune', dash: [6, 4] },
+  { colour: '--keep', dash: [] },
+];
+
+function gaps(values: Float32Array): (number | null)[] {
+  return Array.from(values, (value) => (Number.isFinite(value) ? value : null));
+}
+
+/** How far every node is from where it truly is, along the path where there is one. */
+export function errorPanel(model: Model, store: Store): HTMLElement {
+  const known = model.layouts.filter((layout): layout is Layout & { errors: Float32Array } =>
+    layout.errors !== null,
+  );
+  const title = model.path ? 'Trajectory error along the path' : 'Position errors';
+  if (known.length === 0) return panel('errors', title, absent(model.truthNote));
+  const xs = model.path ?? Float32Array.from({ length: model.nodeCount }, (_, k) => k);
+  const series = known.map((layout, k): ChartSeries => ({
+    label: layout.key,
+    ...LOOKS[known.length === 1 ? 1 : k % LOOKS.length],
+    kind: model.path ? 'line' : 'points',
+    values: gaps(layout.errors),
+  }));
+  return panel(
+    'errors',
+    title,
+    chart(
+      {
+        description: `Distance of ${model.nodeCount} ${model.nouns.nodes} from the truth`,
+        x: { label: model.path ? 'distance along the path, m' : model.nouns.node },
+        y: { label: `error, ${model.unit}` },
+        xs,
+        series,
+      },
+      store,
+    ),
+    html('p', { class: 'note' }, model.truthNote),
+  );
+}

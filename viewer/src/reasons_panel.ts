@@ -1,0 +1,101 @@
+import { absent, html, panel } from './dom';
+import { capital, count, number, quantity } from './format';
+import type { Model } from './model';
+import { conflictsOf, nodeName, stageOf, verdictOf } from './model';
+import type { Store } from './store';
+
+const SHOWN_CONFLICTS = 40;
+
+/** What a stage means, where its name does not say it. */
+export function stageInWords(stage: string): string {
+  const round = /^round (\d+)$/.exec(stage);
+  if (round) return `accepted in round ${round[1]}`;
+  if (/^t=/.test(stage)) return `at diffusion time ${stage.replace('=', ' = ')}`;
+  const words: Record<string, string> = {
+    refuted: 'refuted: the accepted ones predict something else',
+    unproven: 'unproven: neither confirmed nor refuted by the others',
+    unconnected: 'unconnected: nothing accepted joins its ends',
+    induction: 'at induction: its weight vanished',
+    bridge: 'bridge: the rest of the graph says nothing about it',
+    'self-loop': 'it joins a vertex with itself',
+    'no-odometry-path': 'no odometry joins its ends',
+    'short-path': 'the paths at its ends are too short to compare',
+  };
+  return words[stage] ?? stage;
+}
+
+function comparison(score: number, threshold: number): string {
+  if (!(threshold > 0) || !Number.isFinite(threshold)) {
+    return `${number(score)} (no threshold applied)`;
+  }
+  const ratio = number(score / threshold);
+  return `${number(score)} against a threshold of ${number(threshold)} (${ratio} times)`;
+}
+
+function conflictList(model: Model, store: Store, candidate: number): Node {
+  const conflicts = conflictsOf(model, candidate);
+  if (!model.candidates.conflicts) return html('span', {}, 'not told by this method');
+  if (conflicts.length === 0) return html('span', {}, 'none');
+  const buttons = conflicts.slice(0, SHOWN_CONFLICTS).map((other) => {
+    const { from, to } = model.candidates;
+    const label = `${nodeName(model, from[other])} – ${nodeName(model, to[other])}`;
+    const button = html('button', { type: 'button', class: 'link' }, label);
+    button.addEventListener('click', () => store.select(other));
+    return button;
+  });
+  const more = conflicts.length - buttons.length;
+  return html('span', { class: 'chips' }, ...buttons, more > 0 ? `and ${count(more)} more` : '');
+}
+
+function reasons(model: Model, store: Store, candidate: number): HTMLElement {
+  const { candidates, nouns } = model;
+  const names = [candidates.from[candidate], candidates.to[candidate]].map((node) =>
+    nodeName(model, node),
+  );
+  const verdict = verdictOf(model, candidate);
+  const line = candidates.line[candidate];
+  const rows: [string, Node | string][] = [
+    [capital(nouns.edge), `${names[0]} – ${names[1]}`],
+    ['In the file', `edge ${candidates.edge[candidate]}${line > 0 ? `, line ${line}` : ''}`],
+    ['Verdict', html('span', { class: `verdict verdict-${verdict}` }, verdict)],
+    ['Score', comparison(candidates.score[candidate], candidates.threshold[candidate])],
+    ['Decided', stageInWords(stageOf(model, candidate))],
+    ['Conflicts with', conflictList(model, store, candidate)],
+    ...candidates.columns.map((column): [string, Node] => [
+      capital(column.label),
+      html(
+        'span',
+        { title: column.help },
+        quantity(column.values[candidate], column.unit),
+        html('span', { class: 'help' }, ` ${column.help}`),
+      ),
+    ]),
+  ];
+  return html(
+    'dl',
+    { class: 'facts' },
+    ...rows.flatMap(([name, value]) => [html('dt', {}, name), html('dd', {}, value)]),
+  );
+}
+
+/** Why the chosen candidate was decided as it was. */
+export function reasonsPanel(model: Model, store: Store): HTMLElement {
+  const { edge } = model.nouns;
+  const body = html('div', { 'aria-live': 'polite' });
+  const show = (candidate: number) => {
+    body.replaceChildren(
+      candidate < 0
+        ? absent(
+            model.candidates.count > 0
+              ? `Click a ${edge} on the map or in the table; N and P step through them.`
+              : `There are no ${model.nouns.edges} to explain.`,
+          )
+        : reasons(model, store, candidate),
+    );
+  };
+  store.subscribe((state, before) => {
+    if (state.selected !== before.selected) show(state.selected);
+  });
+  show(store.state.selected);
+  return panel('reasons', `Why this ${edge}?`, body);
+}

@@ -1,0 +1,244 @@
+import { count } from './format';
+import type { Layout, Model } from './model';
+import { VERDICTS } from './model';
+
+/** One kind of thing on the map, drawn and toggled together. */
+export interface DrawLayer {
+  key: string;
+  /** three numbers a node */
+  positions: Float32Array;
+  /** pairs of nodes joined by lines; empty for a layer of points */
+  lines: Uint32Array;
+  /** nodes drawn as points */
+  points: Uint32Array;
+  /** candidate of each line, where lines can be chosen */
+  candidates: Uint32Array | null;
+  /** CSS variable with the colour */
+  colour: string;
+  width: number;
+  opacity: number;
+}
+
+/** A layer's name, sign and size, as the legend shows it. */
+export interface LegendEntry {
+  key: string;
+  label: string;
+  count: number;
+  colour: string;
+  shape: 'line' | 'point';
+}
+
+/** What is drawn of a layout, and what is not. */
+export interface Scene {
+  layers: DrawLayer[];
+  /** sentences that say what was thinned */
+  notes: string[];
+}
+
+const COLOURS: Record<string, string> = {
+  trusted: '--trusted',
+  keep: '--keep',
+  prune: '--prune',
+  ambiguous: '--ambiguous',
+  truth: '--truth',
+  nodes: '--node',
+  landmarks: '--landmark',
+};
+
+/** Three numbers a node whatever the dimension. */
+export function inSpace(positions: Float32Array, dimension: number): Float32Array {
+  if (dimension === 3) return positions;
+  const nodes = dimension > 0 ? positions.length / dimension : 0;
+  const space = new Float32Array(3 * nodes);
+  for (let k = 0; k < nodes; ++k) {
+    for (let d = 0; d < dimension; ++d) space[3 * k + d] = positions[dimension * k + d];
+  }
+  return space;
+}
+
+/** `limit` of the positions below `size`, evenly spread; all if there are no more. */
+export function thinned(size: number, limit: number): Uint32Array {
+  const kept = Math.min(size, limit);
+  const chosen = new Uint32Array(kept);
+  for (let k = 0; k < kept; ++k) chosen[k] = Math.floor((k * size) / kept);
+  return chosen;
+}
+
+function isKnown(positions: Float32Array, node: number): boolean {
+  return Number.isFinite(
+    positions[3 * node] + positions[3 * node + 1] + positions[3 * node + 2],
+  );
+}
+
+/** Pairs of nodes as lines, without those whose ends are not known. */
+function linesOf(
+  positions: Float32Array,
+  size: number,
+  ends: (k: number) => [number, number],
+): { lines: Uint32Array; sources: Uint32Array } {
+  const lines = new Uint32Array(2 * size);
+  const sources = new Uint32Array(size);
+  let used = 0;
+  for (let k = 0; k < size; ++k) {
+    const [from, to] = ends(k);
+    if (!isKnown(positions, from) || !isKnown(positions, to)) continue;
+    lines[2 * used] = from;
+    lines[2 * used + 1] = to;
+    sources[used++] = k;
+  }
+  return { lines: lines.subarray(0, 2 * used), sources: sources.subarray(0, used) };
+}
+
+/** Many lines over each other should still let the map show through. */
+function opacityOf(lines: number): number {
+  if (lines > 5000) return 0.25;
+  return lines > 300 ? 0.45 : 0.85;
+}
+
+const AFTERWARDS = 0.4;
+
+const NO_LINES = new Uint32Array(0);
+
+class SceneBuilder {
+  readonly layers: DrawLayer[] = [];
+  readonly notes: string[] = [];
+  private readonly positions: Float32Array;
+  // What was left out has no place in the map that it did not bend.
+  private readonly fading: number;
+
+  constructor(
+    private readonly model: Model,
+    private readonly layout: Layout,
+    private readonly limit: number,
+  ) {
+    this.positions = inSpace(layout.positions, model.dimension);
+    this.fading = layout.key === 'after' ? AFTERWARDS : 1;
+  }
+
+  addCandidates(verdict: number): void {
+    const { candidates, nouns } = this.model;
+    const key = VERDICTS[verdict];
+    const all: number[] = [];
+    candidates.verdict.forEach((v, k) => {
+      if (v === verdict) all.push(k);
+    });
+    const chosen = thinned(all.length, this.limit);
+    const { lines, sources } = linesOf(this.positions, chosen.length, (k) => {
+      const candidate = all[chosen[k]];
+      return [candidates.from[candidate], candidates.to[candidate]];
+    });
+    this.noteThinning(chosen.length, all.length, `${label(key)} ${nouns.edges}`);
+    this.add(key, {
+      lines,
+      candidates: sources.map((k) => all[chosen[k]]),
+      width: 1.5,
+      opacity: key === 'keep' ? 0.9 : opacityOf(chosen.length) * this.fading,
+    });
+  }
+
+  addTrusted(): void {
+    const { trusted, nouns } = this.model;
+    const size = trusted.length / 2;
+    const chosen = thinned(size, 4 * this.limit);
+    const { lines } = linesOf(this.positions, chosen.length, (k) => [
+      trusted[2 * chosen[k]],
+      trusted[2 * chosen[k] + 1],
+    ]);
+    this.noteThinning(chosen.length, size, `${nouns.trusted} edges`);
+    this.add('trusted', { lines, width: 1.5, opacity: 0.9 });
+  }
+
+  /** The true path of a pose graph; elsewhere a line from each node to where it belongs. */
+  addTruth(): void {
+    if (!this.layout.truth) return;
+    const truth = inSpace(this.layout.truth, this.model.dimension);
+    if (this.model.kind === 'pose_graph') {
+      const steps = Math.max(this.model.nodeCount - 1, 0);
+      const { lines } = linesOf(truth, steps, (k) => [k, k + 1]);
+      this.add('truth', { positions: truth, lines, width: 1.5, opacity: 0.9 });
+      return;
+    }
+    const both = new Float32Array(2 * truth.length);
+    both.set(this.positions);
+    both.set(truth, truth.length);
+    const nodes = this.model.nodeCount;
+    const { lines } = linesOf(both, nodes, (k) => [k, nodes + k]);
+    this.add('truth', { positions: both, lines, width: 2, opacity: 0.9 });
+  }
+
+  addNodes(): void {
+    if (this.model.kind === 'pose_graph') return;
+    const landmarks = new Set(this.model.landmarks);
+    const known = [...Array(this.model.nodeCount).keys()].filter((k) => isKnown(this.positions, k));
+    const moving = known.filter((k) => !landmarks.has(k));
+    const chosen = thinned(moving.length, 4 * this.limit);
+    this.noteThinning(chosen.length, moving.length, this.model.nouns.nodes);
+    this.add('nodes', { points: chosen.map((k) => moving[k]), width: 5, opacity: 1 });
+    const fixed = known.filter((k) => landmarks.has(k));
+    this.add('landmarks', { points: Uint32Array.from(fixed), width: 10, opacity: 1 });
+  }
+
+  private add(key: string, layer: Partial<DrawLayer>): void {
+    this.layers.push({
+      key,
+      positions: this.positions,
+      lines: NO_LINES,
+      points: NO_LINES,
+      candidates: null,
+      colour: COLOURS[key],
+      width: 1,
+      opacity: 1,
+      ...layer,
+    });
+  }
+
+  private noteThinning(drawn: number, size: number, what: string): void {
+    if (drawn < size) {
+      this.notes.push(`Drawn: ${count(drawn)} of ${count(size)} ${what}; the table has all.`);
+    }
+  }
+}
+
+function label(key: string): string {
+  return { keep: 'kept', prune: 'pruned', ambiguous: 'ambiguous' }[key] ?? key;
+}
+
+/** The layers of a layout, undermost first; at most `limit` candidates a verdict. */
+export function buildScene(model: Model, layout: Layout, limit: number): Scene {
+  const builder = new SceneBuilder(model, layout, limit);
+  builder.addCandidates(1);
+  builder.addCandidates(2);
+  builder.addTrusted();
+  builder.addCandidates(0);
+  builder.addTruth();
+  builder.addNodes();
+  return { layers: builder.layers, notes: builder.notes };
+}
+
+/** What there is on the map, in the order in which people ask for it. */
+export function legendOf(model: Model): LegendEntry[] {
+  const counts = VERDICTS.map(
+    (_, verdict) => model.candidates.verdict.reduce((sum, v) => sum + Number(v === verdict), 0),
+  );
+  const entries: LegendEntry[] = VERDICTS.map((key, verdict) => ({
+    key,
+    label: `${label(key)} ${model.nouns.edges}`,
+    count: counts[verdict],
+    colour: COLOURS[key],
+    shape: 'line',
+  }));
+  const add = (key: string, text: string, size: number, shape: 'line' | 'point') => {
+    if (size > 0) entries.push({ key, label: text, count: size, colour: COLOURS[key], shape });
+  };
+  add('trusted', model.nouns.trusted, model.trusted.length / 2, 'line');
+  const truth = model.layouts.find((layout) => layout.errors)?.errors;
+  if (truth) {
+    const known = truth.reduce((sum, error) => sum + Number(!Number.isNaN(error)), 0);
+    add('truth', model.kind === 'pose_graph' ? 'ground truth' : 'to true position', known, 'line');
+  }
+  if (model.kind !== 'pose_graph') {
+    add('nodes', model.nouns.nodes, model.nodeCount - model.landmarks.length, 'point');
+    add('landmarks', 'anchors', model.landmarks.length, 'point');
+  }
+  return entries;
+}

@@ -1,0 +1,55 @@
+import { chart } from './chart';
+import { absent, html, panel } from './dom';
+import { count, number } from './format';
+import { histogram, stacked } from './histogram';
+import type { Model } from './model';
+import { VERDICTS } from './model';
+import type { Store } from './store';
+
+/** The one threshold of all candidates, or null if they differ. */
+function commonThreshold(model: Model): number | null {
+  const { threshold } = model.candidates;
+  return threshold.every((value) => value === threshold[0]) ? threshold[0] : null;
+}
+
+/** How the scores lie around the threshold. */
+export function scorePanel(model: Model, store: Store): HTMLElement {
+  const { candidates, nouns } = model;
+  const title = 'Scores and threshold';
+  if (candidates.count === 0) return panel('scores', title, absent('There are no scores.'));
+  const common = commonThreshold(model);
+  // Scores with thresholds of their own are only comparable as ratios.
+  const values =
+    common === null ? candidates.score.map((s, k) => s / candidates.threshold[k]) : candidates.score;
+  const threshold = common ?? 1;
+  const bins = histogram(values, candidates.verdict, VERDICTS.length);
+  // The tallest stack is drawn first, the others over it.
+  const stacks = stacked(bins.counts);
+  const series = VERDICTS.map((name, verdict) => ({
+    label: name,
+    colour: `--${name}`,
+    kind: 'bars' as const,
+    values: [...stacks[verdict], 0],
+  })).reverse();
+  const infinite = candidates.score.reduce((sum, s) => sum + Number(s === Infinity), 0);
+  const note =
+    infinite > 0 ? `${count(infinite)} infinite scores are counted in the last bar.` : '';
+  return panel(
+    'scores',
+    title,
+    chart(
+      {
+        description: `Histogram of the scores of ${count(candidates.count)} ${nouns.edges}, threshold ${number(threshold)}`,
+        x: { label: common === null ? 'score / threshold' : 'score', log: bins.log },
+        y: { label: nouns.edges },
+        xs: bins.edges,
+        series,
+        marks: Number.isFinite(threshold)
+          ? [{ axis: 'x', value: threshold, label: `threshold ${number(threshold)}` }]
+          : [],
+      },
+      store,
+    ),
+    html('p', { class: 'note' }, note),
+  );
+}
