@@ -30,6 +30,7 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
   int run() {
     if (resolve_or_dump()) return kOk;
     options.threads = flags.threads;
+    options.seed = flags.seed;
     options.progress = progress_line(flags);
     const auto file = read_input();
     for (const auto& diagnostic : file.report.diagnostics) warn(flags, to_string(diagnostic));

@@ -6,8 +6,11 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <string>
 
+#include "annealed_heat.hpp"
 #include "isotherm/base/error.hpp"
+#include "isotherm/base/text_writer.hpp"
 #include "isotherm/spectral/effective_resistance.hpp"
 #include "isotherm/spectral/heat_affinity.hpp"
 
@@ -26,7 +29,22 @@ std::vector<Index> other_neighbours(const WeightedGraph& graph, Index vertex, In
   return found;
 }
 
-std::vector<double> heat_scores(const WeightedGraph& graph, const JudgeEdgesOptions& options) {
+struct NeighbourCounts {
+  std::size_t common = 0;
+  std::size_t all = 0;
+};
+
+NeighbourCounts count_neighbours(const WeightedGraph& graph, Index edge) {
+  const auto [from, to, weight] = graph.edge(edge);
+  const auto first = other_neighbours(graph, from, to);
+  const auto second = other_neighbours(graph, to, from);
+  std::vector<Index> common;
+  std::set_intersection(first.begin(), first.end(), second.begin(), second.end(),
+                        std::back_inserter(common));
+  return {common.size(), first.size() + second.size() - common.size()};
+}
+
+std::vector<double> affinity_scores(const WeightedGraph& graph, const JudgeEdgesOptions& options) {
   // Affinities that the tolerance cannot tell from 0 speak of a bridge.
   constexpr double kNoise = 4.0;
   std::vector<Index> edges(graph.edges().size());
@@ -59,14 +77,27 @@ std::vector<double> jaccard_scores(const WeightedGraph& graph) {
   return scores;
 }
 
+std::vector<double> common_neighbour_scores(const WeightedGraph& graph) {
+  std::vector<double> scores;
+  for (Index e = 0; e < graph.edge_count(); ++e) {
+    const auto [common, all] = count_neighbours(graph, e);
+    scores.push_back(all == 0 ? kUnknown : 1.0 / (1.0 + static_cast<double>(common)));
+  }
+  return scores;
+}
+
 std::vector<double> scores_of(const WeightedGraph& graph, const JudgeEdgesOptions& options) {
   switch (options.method) {
     case EdgeScore::heat:
-      return heat_scores(graph, options);
+      break;
+    case EdgeScore::affinity:
+      return affinity_scores(graph, options);
     case EdgeScore::resistance:
       return resistance_scores(graph);
     case EdgeScore::jaccard:
       return jaccard_scores(graph);
+    case EdgeScore::common_neighbours:
+      return common_neighbour_scores(graph);
   }
   throw InvalidArgument("method", "is not a method");
 }
@@ -92,9 +123,61 @@ EdgeVerdict judge(const WeightedEdge& edge, Index id, double score, double thres
   return verdict;
 }
 
+JudgeEdgesResult judge_all(const WeightedGraph& graph, const std::vector<double>& scores,
+                           const Threshold& threshold, std::string_view stage) {
+  JudgeEdgesResult result;
+  result.threshold = threshold;
+  for (Index e = 0; e < graph.edge_count(); ++e) {
+    result.verdicts.push_back(judge(graph.edge(e), e, scores[e], threshold.value, stage));
+  }
+  return result;
+}
+
+JudgeEdgesResult judge_by_threshold(const WeightedGraph& graph, const JudgeEdgesOptions& options) {
+  const auto scores = scores_of(graph, options);
+  std::vector<double> known;
+  for (std::size_t e = 0; e < scores.size(); ++e) {
+    const auto& edge = graph.edges()[e];
+    if (scores[e] != kUnknown && edge.from != edge.to) known.push_back(scores[e]);
+  }
+  const auto threshold = find_threshold(known, {.rule = options.threshold, .konst = options.konst});
+  return judge_all(graph, scores, threshold, enum_name(options.method));
+}
+
+JudgeEdgesResult judge_by_heat(const WeightedGraph& graph, const JudgeEdgesOptions& options) {
+  auto heat = detail::anneal_heat(graph, {.rounds = options.rounds,
+                                          .chance = options.chance,
+                                          .seed = options.seed,
+                                          .threads = options.threads,
+                                          .progress = options.progress});
+  // The probability falls with the score, so that a threshold stands for the chance.
+  Threshold threshold{0.0, 0.0, true};
+  double certainty = 0.0;
+  double count = 0.0;
+  for (std::size_t e = 0; e < heat.scores.size(); ++e) {
+    const auto& edge = graph.edges()[e];
+    if (heat.bridge[e]) heat.scores[e] = kUnknown;
+    if (heat.bridge[e] || edge.from == edge.to) continue;
+    certainty += std::abs(2.0 * heat.truth[e] - 1.0);
+    count += 1.0;
+    if (heat.truth[e] < options.chance) {
+      threshold.degenerate = false;
+    } else {
+      threshold.value = std::max(threshold.value, heat.scores[e]);
+    }
+  }
+  if (count > 0.0) threshold.separation = certainty / count;
+  if (threshold.degenerate) threshold.value = std::numeric_limits<double>::infinity();
+  const std::string stage =
+      "heat scale " + format_number(heat.scale) + " steps " + std::to_string(heat.horizon);
+  return judge_all(graph, heat.scores, threshold, stage);
+}
+
 }  // namespace
 
 void JudgeEdgesOptions::validate() const {
+  if (rounds < 1 || rounds > 10) throw InvalidArgument("rounds", "must be in [1, 10]");
+  if (!(chance > 0.0 && chance < 1.0)) throw InvalidArgument("chance", "must be in (0, 1)");
   if (!(std::isfinite(scale) && scale > 0.0)) {
     throw InvalidArgument("scale", "must be finite and positive");
   }
@@ -104,31 +187,15 @@ void JudgeEdgesOptions::validate() const {
 }
 
 double jaccard_index(const WeightedGraph& graph, Index edge) {
-  const auto [from, to, weight] = graph.edge(edge);
-  const auto first = other_neighbours(graph, from, to);
-  const auto second = other_neighbours(graph, to, from);
-  std::vector<Index> common;
-  std::set_intersection(first.begin(), first.end(), second.begin(), second.end(),
-                        std::back_inserter(common));
-  const std::size_t all = first.size() + second.size() - common.size();
-  return all == 0 ? -1.0 : static_cast<double>(common.size()) / static_cast<double>(all);
+  const auto [common, all] = count_neighbours(graph, edge);
+  return all == 0 ? -1.0 : static_cast<double>(common) / static_cast<double>(all);
 }
 
 JudgeEdgesResult judge_edges(const WeightedGraph& graph, const JudgeEdgesOptions& options) {
   options.validate();
   const auto start = std::chrono::steady_clock::now();
-  const auto scores = scores_of(graph, options);
-  std::vector<double> known;
-  for (std::size_t e = 0; e < scores.size(); ++e) {
-    const auto& edge = graph.edges()[e];
-    if (scores[e] != kUnknown && edge.from != edge.to) known.push_back(scores[e]);
-  }
-  JudgeEdgesResult result;
-  result.threshold = find_threshold(known, {.rule = options.threshold, .konst = options.konst});
-  for (Index e = 0; e < graph.edge_count(); ++e) {
-    result.verdicts.push_back(
-        judge(graph.edge(e), e, scores[e], result.threshold.value, enum_name(options.method)));
-  }
+  auto result = options.method == EdgeScore::heat ? judge_by_heat(graph, options)
+                                                  : judge_by_threshold(graph, options);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

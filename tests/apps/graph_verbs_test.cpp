@@ -33,7 +33,7 @@ class GraphVerbs : public CommandTest {
 
 TEST_F(GraphVerbs, EdgesFindsTheShortCircuitByEveryMethod) {
   make_strip();
-  for (const std::string method : {"heat", "resistance", "jaccard"}) {
+  for (const std::string method : {"heat", "affinity", "resistance", "jaccard"}) {
     run_ok("edges strip.csv -o kept.csv --verdicts verdicts.csv --json result.json --method " +
            method);
     EXPECT_THAT(read_text(folder / "verdicts.csv"), HasSubstr("\n114,100,135,prune,")) << method;

@@ -13,7 +13,8 @@ namespace {
 
 using namespace isotherm_test;
 
-constexpr std::array kMethods = {EdgeScore::heat, EdgeScore::resistance, EdgeScore::jaccard};
+constexpr std::array kMethods = {EdgeScore::heat, EdgeScore::affinity, EdgeScore::resistance,
+                                 EdgeScore::jaccard, EdgeScore::common_neighbours};
 
 /// Points in the unit square joined to those near them, and `false_count` edges
 /// at the end that join points far from each other.
@@ -74,6 +75,86 @@ TEST(JudgeEdges, FindsShortCircuitsOfAGeometricGraph) {
   }
 }
 
+/// Share of the true edges that heat prunes, and of the false ones that it leaves.
+std::pair<double, double> heat_errors(const WeightedGraph& graph, Index false_count) {
+  const auto verdicts = judge_edges(graph).verdicts;
+  const Index true_count = graph.edge_count() - false_count;
+  double pruned = 0.0, left = 0.0;
+  for (Index e = 0; e < graph.edge_count(); ++e) {
+    const bool prune = verdicts[e].verdict == Verdict::prune;
+    if (e < true_count && prune) pruned += 1.0;
+    if (e >= true_count && !prune) left += 1.0;
+  }
+  return {pruned / true_count, left / std::max<Index>(1, false_count)};
+}
+
+TEST(JudgeEdges, HeatKeepsCleanGraphs) {
+  Random random(82);
+  EXPECT_LE(heat_errors(with_false_edges(800, 0.07, 0, random), 0).first, 0.003);
+  EXPECT_EQ(heat_errors(grid_graph(30, 30), 0).first, 0.0);
+  EXPECT_EQ(heat_errors(complete_graph(20), 0).first, 0.0);
+  EXPECT_EQ(heat_errors(ring_graph(40), 0).first, 0.0);
+}
+
+TEST(JudgeEdges, HeatStandsAsManyFalseEdgesAsTrueOnes) {
+  Random random(83);
+  const Index true_count = with_false_edges(1000, 0.07, 0, random).edge_count();
+  for (const Index false_count : {true_count / 10, true_count}) {
+    const auto graph = with_false_edges(1000, 0.07, false_count, random);
+    const auto [pruned, left] = heat_errors(graph, false_count);
+    EXPECT_LT(pruned, 0.02) << false_count;
+    EXPECT_LT(left, 0.02) << false_count;
+    EXPECT_GT(
+        area_under_curve(judge_edges(graph).verdicts, false_count),
+        area_under_curve(judge_edges(graph, {.method = EdgeScore::jaccard}).verdicts, false_count));
+  }
+}
+
+TEST(JudgeEdges, HeatFindsShortcutsWhereThereAreNoTriangles) {
+  const auto grid = grid_graph(40, 40);
+  std::vector<WeightedEdge> edges(grid.edges().begin(), grid.edges().end());
+  Random random(84);
+  for (int k = 0; k < 30; ++k) {
+    edges.push_back({random_vertex(random, 1600), random_vertex(random, 1600), 1.0});
+  }
+  const auto [pruned, left] = heat_errors({1600, std::move(edges)}, 30);
+  EXPECT_LT(pruned, 0.01);
+  EXPECT_LT(left, 0.1);
+}
+
+TEST(JudgeEdges, HeatDependsOnTheSeedAndNothingElse) {
+  Random random(85);
+  const auto graph = with_false_edges(300, 0.1, 50, random);
+  const auto first = judge_edges(graph, {.seed = 7, .threads = 1});
+  const auto second = judge_edges(graph, {.seed = 7, .threads = 3});
+  for (std::size_t e = 0; e < first.verdicts.size(); ++e) {
+    EXPECT_EQ(first.verdicts[e].score, second.verdicts[e].score);
+    EXPECT_EQ(first.verdicts[e].verdict, second.verdicts[e].verdict);
+  }
+  EXPECT_EQ(first.threshold.value, second.threshold.value);
+}
+
+TEST(JudgeEdges, HeatTakesDegenerateGraphs) {
+  Random random(86);
+  const auto island = with_false_edges(200, 0.12, 10, random);
+  EXPECT_EQ(judge_edges(disjoint_union(island, island)).verdicts.size(), 2 * island.edges().size());
+  // Repeated edges do not vouch for each other.
+  std::vector<WeightedEdge> twice;
+  for (const auto& edge : island.edges()) {
+    twice.push_back(edge);
+    twice.push_back({edge.to, edge.from, edge.weight});
+  }
+  const auto once = judge_edges(island).verdicts;
+  const auto both = judge_edges({200, twice}).verdicts;
+  for (std::size_t e = 0; e < once.size(); ++e) {
+    EXPECT_EQ(both[2 * e].verdict, once[e].verdict);
+    EXPECT_EQ(both[2 * e + 1].verdict, once[e].verdict);
+  }
+  const auto wide = judge_edges(spread_weights(island, 600.0, random));
+  for (const auto& verdict : wide.verdicts) EXPECT_FALSE(std::isnan(verdict.score));
+  EXPECT_EQ(count(judge_edges(star_graph(50)).verdicts, Verdict::ambiguous), 49);
+}
+
 TEST(JudgeEdges, BridgesAreAmbiguousAndSelfLoopsKept) {
   const WeightedGraph graph(
       7, {{0, 1, 1.0}, {1, 2, 1.0}, {2, 0, 1.0}, {2, 3, 1.0}, {4, 4, 1.0}, {5, 6, 2.0}});
@@ -86,7 +167,7 @@ TEST(JudgeEdges, BridgesAreAmbiguousAndSelfLoopsKept) {
     EXPECT_EQ(verdicts[4].verdict, Verdict::keep);
     EXPECT_EQ(verdicts[5].verdict, Verdict::ambiguous) << enum_name(method);
   }
-  for (const auto method : {EdgeScore::heat, EdgeScore::resistance}) {
+  for (const auto method : {EdgeScore::heat, EdgeScore::affinity, EdgeScore::resistance}) {
     EXPECT_EQ(judge_edges(graph, {.method = method}).verdicts[3].stage, "bridge");
   }
 }
@@ -100,6 +181,9 @@ TEST(JudgeEdges, JaccardIndexByHand) {
 
 TEST(JudgeEdges, EmptyGraphAndBadOptions) {
   EXPECT_TRUE(judge_edges(WeightedGraph()).verdicts.empty());
+  EXPECT_TRUE(judge_edges(WeightedGraph(1, {})).verdicts.empty());
+  EXPECT_THROW(judge_edges(path_graph(3), {.rounds = 0}), InvalidArgument);
+  EXPECT_THROW(judge_edges(path_graph(3), {.chance = 1.0}), InvalidArgument);
   EXPECT_THROW(judge_edges(path_graph(3), {.scale = 0.0}), InvalidArgument);
   EXPECT_THROW(judge_edges(path_graph(3), {.konst = std::nan("")}), InvalidArgument);
   EXPECT_THROW(judge_edges(path_graph(3), {.tolerance = 0.0}), InvalidArgument);

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "isotherm/base/progress.hpp"
+#include "isotherm/spectral/weighted_graph.hpp"
+
+namespace isotherm::spectral::detail {
+
+struct AnnealedHeatOptions {
+  int rounds = 3;       ///< >= 1
+  double chance = 0.5;  ///< edges less likely true take no part in the next round
+  std::uint64_t seed = 1;
+  int threads = 0;
+  ProgressCallback progress = {};
+};
+
+/// What the last round found out about each edge.
+struct AnnealedHeat {
+  /// -log of the affinity; where no walk joins the ends, kNoWalk plus the score of the
+  /// round before (0 in the first).
+  std::vector<double> scores;
+  /// Probability that the edge is a true one; 1 for those that are not judged:
+  /// bridges, self-loops, and chains that close on themselves.
+  std::vector<double> truth;
+  std::vector<bool> bridge;  ///< nothing is known about these
+  double false_count = 0.0;  ///< estimated number of false edges
+  double scale = 0.0;        ///< of the last round, in expected steps
+  int horizon = 0;           ///< of the last round, in steps
+};
+
+/// A score that no affinity reaches.
+inline constexpr double kNoWalk = 1000.0;
+
+/// Judges all edges by the heat that the rest of the graph carries between their ends,
+/// and again in the graph weighted by that judgement, at scales that double.
+///
+/// Parallel edges are judged as one, bridges are left out, and a chain of edges through vertices of
+/// degree two is judged as one edge (series_reduction.hpp): each of its edges has the same detour,
+/// which speaks against all or none of them.
+///
+/// Walk affinities (walk_affinity.hpp) of the edges are compared with those of random
+/// pairs of vertices, which is what false edges are taken to look like
+/// (two_groups.hpp). The first horizon is three times the median detour around an edge, as
+/// far as that is affordable.
+/// @throws Cancelled
+AnnealedHeat anneal_heat(const WeightedGraph& graph, const AnnealedHeatOptions& options);
+
+}  // namespace isotherm::spectral::detail

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace isotherm::spectral::detail {
+
+/// A list of scores explained as a mixture of true and false ones.
+struct TwoGroups {
+  std::vector<double> truth;  ///< probability that each score is a true one, in [0, 1]
+  double false_count = 0.0;   ///< estimated number of false ones
+};
+
+/// Separates `scores` (larger is more suspicious) given scores that are known to be
+/// false, `null_scores`, of which the false ones are taken to be a further sample.
+///
+/// The number of false ones is estimated from the upper tails (Storey 2002); the
+/// local false discovery rate (Efron et al. 2001) is a ratio of two densities, of
+/// which neither is modelled: it is found by isotonic regression of group on score,
+/// and so the probability never rises with the score. Without null scores, all are
+/// true. O(q log q) for q scores of both kinds.
+TwoGroups separate_groups(std::span<const double> scores, std::span<const double> null_scores);
+
+}  // namespace isotherm::spectral::detail
