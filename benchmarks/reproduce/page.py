@@ -1,0 +1,165 @@
+"""Writes docs/results/paper.md from the results."""
+
+import math
+
+from cells import TYPES
+from methods import BICOCCA_COLUMNS, PRUNING, bicocca_error, mean
+from plan import COMBINED, KITTI, PRINTED_COUNTS
+from printed import TABLE1, TABLE2
+
+STYLE_NAMES = {"paper": "the paper's style", "vertigo": "Vertigo's style",
+               "file": "the paper's own files"}
+
+TIE = 1.02  # errors within two per cent are equal
+
+
+def shown(value, digits=2):
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return "–"
+    return f"{value:.{digits}f}"
+
+
+def table(header, rows):
+    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
+    lines += ["| " + " | ".join(row) + " |" for row in rows]
+    return "\n".join(lines) + "\n"
+
+
+class Page:
+    def __init__(self, results, extent):
+        self.results, self.extent = results, extent
+
+    def mean_over_seeds(self, prefix, suffix, pick):
+        """The mean of `pick(result)` over the seeds; nan where none is there."""
+        values = []
+        for seed in self.extent.seeds:
+            result = self.results.get(f"{prefix}/{seed}/{suffix}")
+            if result is not None:
+                values.append(pick(result))
+        return mean(values)
+
+    # Table I
+
+    def table1(self, style):
+        columns = ("SC", "RRR", "heat (paper)")
+        header = ["KITTI", "outliers", "type", "method", "P", "R", "F", "ATE", "RMSE",
+                  "printed P", "printed R", "printed F", "printed ATE"]
+        rows = []
+        for sequence, count in KITTI.items():
+            for kind in TYPES:
+                printed = TABLE1[sequence, kind]
+                for method in PRUNING:
+                    row = [sequence, str(count), kind, method]
+                    for key in ("precision", "recall", "f1", "ate", "rmse"):
+                        row.append(shown(self.pruning(style, sequence, kind, method, key),
+                                         3 if key in ("precision", "recall", "f1") else 2))
+                    if method in columns:
+                        row += [shown(figure[columns.index(method)]) for figure in printed]
+                    else:
+                        row += ["", "", "", ""]
+                    rows.append(row)
+        return table(header, rows)
+
+    def pruning(self, style, sequence, kind, method, key):
+        return self.mean_over_seeds(f"table1/{sequence}/{style}/{kind}", method,
+                                    lambda result: result[key])
+
+    def konst_table(self, style):
+        """F of the paper's method a konst, which shows what hindsight is worth."""
+        rows = []
+        for sequence in KITTI:
+            for kind in TYPES:
+                prefix = f"table1/{sequence}/{style}/{kind}"
+                values = [self.mean_over_seeds(prefix, "konst", lambda r, k=konst: r[str(k)])
+                          for konst in range(5)]
+                rows.append([sequence, kind, *(shown(value, 3) for value in values),
+                             shown(TABLE1[sequence, kind][2][2])])
+        return table(["KITTI", "type", *(f"konst {k}" for k in range(5)), "printed F"], rows)
+
+    def places_table(self):
+        rows = []
+        for sequence in KITTI:
+            for method in PRUNING:
+                prefix = f"places/{sequence}/{self.extent.candidates}"
+                row = [sequence, method]
+                for key in ("precision", "recall", "f1", "ate", "rmse", "seconds"):
+                    row.append(shown(self.mean_over_seeds(prefix, method, lambda r, k=key: r[k]),
+                                     3 if key in ("precision", "recall", "f1") else 2))
+                rows.append(row)
+        return table(["KITTI", "method", "P", "R", "F", "ATE", "RMSE", "CPU s"], rows)
+
+    # Table II
+
+    def table2(self, style, counts, key):
+        """One row a cell: errors of every method, for the aligned RMSE the best marked."""
+        printed = key == "ate" and style != "file"
+        header = ["outliers", "type", *BICOCCA_COLUMNS]
+        if printed:
+            header += ["printed: DCS", "printed: theirs + DCS", "printed: Cauchy"]
+        rows = []
+        for count in counts:
+            for kind in TYPES:
+                values = self.bicocca_errors(style, kind, count, key)
+                lowest = min(values)
+                row = [str(count), kind]
+                for value in values:
+                    tied = key == "rmse" and value <= TIE * lowest
+                    row.append(f"**{shown(value)}**" if tied else shown(value))
+                if printed:
+                    row += [shown(value) for value in TABLE2[count, kind]]
+                rows.append(row)
+        return table(header, rows)
+
+    def bicocca_errors(self, style, kind, count, key):
+        return [bicocca_error(self.results, self.extent, style, kind, count, column, key)
+                for column in BICOCCA_COLUMNS]
+
+    def verdict_table(self, style, counts):
+        """Precision and recall on Bicocca, whose real loops are labelled by ground truth."""
+        rows = []
+        for count in counts:
+            for kind in TYPES:
+                row = [str(count), kind]
+                for method in COMBINED:
+                    row += [shown(self.verdicts(style, kind, count, method, key), 3)
+                            for key in ("precision", "recall")]
+                rows.append(row)
+        header = ["outliers", "type"]
+        for method in COMBINED:
+            header += [f"{method.removesuffix(' + DCS')} P", "R"]
+        return table(header, rows)
+
+    def verdicts(self, style, kind, count, method, key):
+        seeds = (1,) if style == "file" else self.extent.seeds
+        found = [self.results.get(f"table2/{style}/{kind}/{count}/{seed}/{method}")
+                 for seed in seeds]
+        return mean([result[key] for result in found if result is not None])
+
+    # What the tables say
+
+    def table1_wins(self, style):
+        """Cells of Table I, cells where the F of consensus is at least the printed one,
+        where it is at least 0.99, and where the F of the heat row is."""
+        cells = [(sequence, kind) for sequence in KITTI for kind in TYPES]
+        ours = {cell: self.pruning(style, *cell, "consensus", "f1") for cell in cells}
+        heat = {cell: self.pruning(style, *cell, "heat (paper)", "f1") for cell in cells}
+        printed = {cell: TABLE1[cell][2][2] for cell in cells}
+        return (len(cells), sum(ours[cell] >= printed[cell] for cell in cells),
+                sum(ours[cell] >= 0.99 for cell in cells),
+                sum(heat[cell] >= printed[cell] - 0.005 for cell in cells))
+
+    def table2_wins(self, style, counts):
+        """Cells of Table II, and cells where consensus, alone or with DCS, is the best by
+        aligned RMSE or tied with it."""
+        names = list(BICOCCA_COLUMNS)
+        wins = cells = 0
+        for count in counts:
+            for kind in TYPES:
+                errors = dict(zip(names, self.bicocca_errors(style, kind, count, "rmse")))
+                ours = min(errors["consensus"], errors["consensus + DCS"])
+                cells += 1
+                wins += ours <= TIE * min(errors.values())
+        return cells, wins
+
+    def printed_counts(self):
+        return [count for count in PRINTED_COUNTS if count in self.extent.counts()]
