@@ -9,8 +9,8 @@ packages=(
   # libraries
   libboost-dev libcgal-dev libeigen3-dev libspectra-dev libsuitesparse-dev libtbb-dev zlib1g-dev
   libfast-float-dev libnanoflann-dev libcli11-dev nlohmann-json3-dev libfmt-dev
-  # dense kernels for CHOLMOD, twice as fast as those it brings along
-  libopenblas0-serial
+  # dense kernels, also for CHOLMOD; several times as fast as the reference ones
+  libblas-dev libopenblas0-serial
   # tests
   libgtest-dev libgmock-dev librapidcheck-dev
   # benchmarks

@@ -5,6 +5,7 @@
 
 #include <cholmod.h>
 
+#include "block_order.hpp"
 #include "isotherm/base/error.hpp"
 
 namespace isotherm::slam {
@@ -66,8 +67,17 @@ struct BlockCholesky::Factor {
   Factor(const Factor&) = delete;
   Factor& operator=(const Factor&) = delete;
 
-  // The order of the blocks that gives the sparsest factor.
-  std::vector<int> block_order(std::vector<int>& starts, std::vector<int>& rows) {
+  // The order of what is left of the graph that gives the sparsest factor.
+  std::vector<int> core_order(const ChainElimination& chains) {
+    if (chains.core.empty()) return {};
+    std::vector<int> starts = {0};
+    std::vector<int> rows;
+    Index column = 0;
+    for (const auto& below : rows_below(static_cast<Index>(chains.core.size()), chains.pairs)) {
+      rows.push_back(column++);
+      rows.insert(rows.end(), below.begin(), below.end());
+      starts.push_back(static_cast<int>(rows.size()));
+    }
     common.nmethods = 2;
     common.method[0].ordering = CHOLMOD_AMD;
     common.method[1].ordering = CHOLMOD_METIS;
@@ -82,10 +92,11 @@ struct BlockCholesky::Factor {
     return order;
   }
 
-  void analyse(std::vector<int>& starts, std::vector<int>& rows, std::vector<int>& order) {
+  void analyse(std::vector<int>& starts, std::vector<int>& rows, std::vector<int>& order,
+               FactorForm form) {
     common.nmethods = 1;
     common.method[0].ordering = CHOLMOD_GIVEN;
-    common.supernodal = CHOLMOD_AUTO;
+    common.supernodal = form == FactorForm::supernodal ? CHOLMOD_SUPERNODAL : CHOLMOD_AUTO;
     // Dense kernels pay only where blocks of columns are wide: in the plane they
     // rarely are, and column by column is twice as fast.
     common.supernodal_switch = 120.0;
@@ -102,26 +113,21 @@ struct BlockCholesky::Factor {
 };
 
 BlockCholesky::BlockCholesky(int block_size, Index block_count,
-                             std::span<const std::pair<Index, Index>> pairs)
-    : block_size_(block_size), diagonals_(static_cast<std::size_t>(block_count)) {
+                             std::span<const std::pair<Index, Index>> pairs, FactorForm form)
+    : block_size_(block_size), form_(form), diagonals_(static_cast<std::size_t>(block_count)) {
   lay_out(pairs);
   factor_ = std::make_unique<Factor>();
   if (block_count == 0) return;
 
-  std::vector<int> block_starts = {0};
-  std::vector<int> block_rows;
-  const auto below = rows_below(block_count, pairs);
-  for (Index column = 0; column < block_count; ++column) {
-    block_rows.push_back(column);
-    block_rows.insert(block_rows.end(), below[column].begin(), below[column].end());
-    block_starts.push_back(static_cast<int>(block_rows.size()));
-  }
+  const ChainElimination chains = eliminate_chains(block_count, pairs);
+  std::vector<Index> blocks = chains.order;
+  for (const int place : factor_->core_order(chains)) blocks.push_back(chains.core[place]);
   std::vector<int> order;
   order.reserve(static_cast<std::size_t>(size()));
-  for (const int block : factor_->block_order(block_starts, block_rows)) {
+  for (const Index block : blocks) {
     for (int k = 0; k < block_size_; ++k) order.push_back(block * block_size_ + k);
   }
-  factor_->analyse(column_starts_, rows_, order);
+  factor_->analyse(column_starts_, rows_, order, form_);
 }
 
 BlockCholesky::~BlockCholesky() = default;
@@ -228,6 +234,24 @@ Eigen::MatrixXd BlockCholesky::solve(const Eigen::MatrixXd& rhs) const {
                                            rhs.cols());
   cholmod_free_dense(&solution, &factor_->common);
   return copy;
+}
+
+BlockCholesky::Supernodes BlockCholesky::supernodes() const {
+  if (form_ != FactorForm::supernodal) {
+    throw InvalidArgument("form", "the factor was not asked to be supernodal");
+  }
+  if (!factor_->usable) throw NumericalError("cholesky", "covariances without a factor");
+  const cholmod_factor* factor = factor_->factor;
+  if (factor == nullptr) return {};
+  const auto ints = [](const void* data, std::size_t count) {
+    return std::span(static_cast<const int*>(data), count);
+  };
+  return {.first_column = ints(factor->super, factor->nsuper + 1),
+          .row_start = ints(factor->pi, factor->nsuper + 1),
+          .rows = ints(factor->s, factor->ssize),
+          .value_start = ints(factor->px, factor->nsuper),
+          .values = {static_cast<const double*>(factor->x), factor->xsize},
+          .order = ints(factor->Perm, factor->n)};
 }
 
 }  // namespace isotherm::slam

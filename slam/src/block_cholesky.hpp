@@ -13,18 +13,25 @@ namespace isotherm::slam {
 
 using spectral::Index;
 
+/// How a Cholesky factor is stored.
+enum class FactorForm {
+  fastest,     ///< whatever takes the least time to factorise and to solve
+  supernodal,  ///< by dense blocks of columns, as covariances are read from
+};
+
 /// A symmetric matrix of dense square blocks, one block row a pose, and its
 /// Cholesky factor.
 ///
 /// The pattern is given once; values change between factorisations, which then
 /// cost only the numerical part. The fill-reducing order is computed on the
-/// graph of blocks (AMD and nested dissection, the sparser factor is taken),
+/// graph of blocks (chains first, then the sparser of AMD and nested dissection),
 /// which is block_size^2 times smaller than the scalar matrix.
 class BlockCholesky {
  public:
   /// @param pairs off-diagonal blocks that may be non-zero, as (row, column) in
   ///   either order, row != column; repeats are allowed and share their storage.
-  BlockCholesky(int block_size, Index block_count, std::span<const std::pair<Index, Index>> pairs);
+  BlockCholesky(int block_size, Index block_count, std::span<const std::pair<Index, Index>> pairs,
+                FactorForm form = FactorForm::fastest);
   ~BlockCholesky();
   BlockCholesky(BlockCholesky&&) noexcept;
   BlockCholesky& operator=(BlockCholesky&&) noexcept;
@@ -67,6 +74,22 @@ class BlockCholesky {
   /// @throws NumericalError without a successful factorise() before.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& rhs) const;
 
+  /// A = L L' by supernodes: runs of columns of L with the same rows below them. All
+  /// indices count scalars, in order of elimination, and no supernode parts a block.
+  struct Supernodes {
+    std::span<const int> first_column;  ///< one a supernode, and the end
+    std::span<const int> row_start;     ///< in `rows`, one a supernode, and the end
+    std::span<const int> rows;          ///< ascending; own columns first
+    std::span<const int> value_start;   ///< in `values`, one a supernode
+    std::span<const double> values;     ///< dense and by columns; lower triangular on top
+    std::span<const int> order;         ///< the row of A eliminated k-th
+  };
+
+  /// Valid until the next factorisation.
+  /// @throws InvalidArgument unless the form is supernodal; NumericalError without a
+  /// successful factorise() before.
+  Supernodes supernodes() const;
+
  private:
   // A block inside the column-compressed values: the place of its first entry
   // and the distance between its columns.
@@ -93,6 +116,7 @@ class BlockCholesky {
   void lay_out(std::span<const std::pair<Index, Index>> pairs);
 
   int block_size_;
+  FactorForm form_;
   std::vector<BlockPlace> diagonals_;
   std::vector<PairPlace> pairs_;
   // Lower triangle by columns; diagonal blocks are stored in full.

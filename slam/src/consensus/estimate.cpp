@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "../block_covariance.hpp"
 #include "isotherm/base/error.hpp"
 
 namespace isotherm::slam::detail {
@@ -37,13 +38,12 @@ void Estimate<Pose>::update(const std::vector<bool>& accepted, const CovarianceS
   hold_one_pose_each();
   lay_out(accepted);
   for (int step = 0;; ++step) {
-    Eigen::VectorXd move = linearise(scale);
-    const Eigen::VectorXd gradient = move;
+    const Eigen::VectorXd gradient = linearise(scale);
     if (!factor_->factorise()) {
       throw NumericalError("consensus", "the normal equations are not positive definite");
     }
     if (step == max_steps) return;
-    factor_->solve(move);
+    const Eigen::VectorXd move = factor_->solve(gradient);
     const double decrement = move.dot(gradient);
     retract(move);
     // The Newton decrement is the squared length of the step in deviations.
@@ -61,13 +61,28 @@ bool Estimate<Pose>::connected(const Link<Pose>& loop) const {
   return component_[loop.a] == component_[loop.b];
 }
 
+// d(T_a^-1 T_b) = -Ad d_a + d_b, with Ad the adjoint of T_b_a.
 template <class Pose>
-typename Pose::Matrix Estimate<Pose>::relative_covariance(
-    const Link<Pose>& loop, typename Factor::Workspace& workspace) const {
-  if (loop.a == loop.b) return Matrix::Zero();
-  const Matrix adjoint = (poses_[loop.b].inverse() * poses_[loop.a]).adjoint();
-  return factor_->quadratic_form(workspace, variable_[loop.a], -adjoint.transpose(),
-                                 variable_[loop.b], Matrix::Identity());
+std::vector<typename Pose::Matrix> Estimate<Pose>::relative_covariances(
+    std::span<const Index> loops, int threads) const {
+  std::vector<std::pair<Index, Index>> pairs;
+  pairs.reserve(loops.size());
+  for (const Index k : loops) {
+    const auto& loop = graph_.loops[k];
+    const bool turns_back = loop.a == loop.b;
+    pairs.emplace_back(turns_back ? -1 : variable_[loop.a], turns_back ? -1 : variable_[loop.b]);
+  }
+  const auto known = pair_covariances<Pose::kDof>(*factor_, pairs, threads);
+  std::vector<Matrix> covariances;
+  covariances.reserve(loops.size());
+  for (std::size_t k = 0; k < loops.size(); ++k) {
+    const auto& loop = graph_.loops[loops[k]];
+    const Matrix adjoint = (poses_[loop.b].inverse() * poses_[loop.a]).adjoint();
+    const Matrix across = adjoint * known[k].cross;
+    covariances.push_back(adjoint * known[k].first * adjoint.transpose() + known[k].second -
+                          across - across.transpose());
+  }
+  return covariances;
 }
 
 template <class Pose>
@@ -148,7 +163,8 @@ void Estimate<Pose>::lay_out(const std::vector<bool>& accepted) {
     active_loops_.push_back(static_cast<Index>(k));
     place(loop);
   }
-  factor_ = std::make_unique<Factor>(variable_count_, pairs);
+  factor_ =
+      std::make_unique<BlockCholesky>(Pose::kDof, variable_count_, pairs, FactorForm::supernodal);
 }
 
 template <class Pose>

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
-#include "block_factor.hpp"
+#include "../block_cholesky.hpp"
 #include "reduced_graph.hpp"
 
 namespace isotherm::slam::detail {
@@ -21,7 +22,6 @@ class Estimate {
  public:
   using Matrix = typename Pose::Matrix;
   using Tangent = typename Pose::Tangent;
-  using Factor = BlockFactor<Pose::kDof>;
 
   /// `graph` must outlive this object. Starts at odometry.
   explicit Estimate(const ReducedGraph<Pose>& graph);
@@ -41,10 +41,9 @@ class Estimate {
   /// Whether trusted and accepted links join the ends of `loop`.
   bool connected(const Link<Pose>& loop) const;
 
-  /// Covariance of T_a^-1 T_b as a perturbation on the right, from the factor of
-  /// the last update. The ends must be connected.
-  Matrix relative_covariance(const Link<Pose>& loop, typename Factor::Workspace& workspace) const;
-  typename Factor::Workspace make_workspace() const { return factor_->make_workspace(); }
+  /// Covariances of T_a^-1 T_b, one each of `loops`, as perturbations on the right, from
+  /// the factor of the last update. The ends of each must be connected.
+  std::vector<Matrix> relative_covariances(std::span<const Index> loops, int threads) const;
 
   /// r' Omega r summed over odometry, in units of the file's covariances.
   double odometry_cost() const;
@@ -68,7 +67,7 @@ class Estimate {
   Index variable_count_ = 0;
   std::vector<Index> active_loops_;
   std::vector<std::ptrdiff_t> pair_of_;  // steps, then active loops; -1 without a block
-  std::unique_ptr<Factor> factor_;
+  std::unique_ptr<BlockCholesky> factor_;
 };
 
 /// The part of log(T_measured^-1 T) that changes with T: J with

@@ -11,7 +11,6 @@
 #include "conflicts.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/statistics.hpp"
-#include "parallel.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -149,7 +148,7 @@ bool Search<Pose>::drop_inconsistent() {
     if (accepted_[k] && !judge(loop)) doubtful.push_back(loop);
   }
   // An old covariance is an upper bound, and so is the chi-squared it gives.
-  const auto covariances = fresh_covariances(doubtful);
+  const auto covariances = estimate_.relative_covariances(doubtful, options_.threads);
   double worst = 0.0;
   for (std::size_t k = 0; k < doubtful.size(); ++k) {
     states_[doubtful[k]].covariance = covariances[k];
@@ -205,18 +204,6 @@ double Search<Pose>::fitted_chi2(Index loop, const Matrix& covariance) const {
 }
 
 template <class Pose>
-std::vector<typename Search<Pose>::Matrix> Search<Pose>::fresh_covariances(
-    const Selection& loops) const {
-  std::vector<Matrix> covariances(loops.size());
-  for_each_in_parallel(
-      loops.size(), options_.threads, [this] { return estimate_.make_workspace(); },
-      [&](auto& workspace, std::size_t k) {
-        covariances[k] = estimate_.relative_covariance(graph_.loops[loops[k]], workspace);
-      });
-  return covariances;
-}
-
-template <class Pose>
 Evidence Search<Pose>::weigh_loop(Index loop, const Matrix& covariance) const {
   const auto& link = graph_.loops[loop];
   const Tangent r = estimate_.residual(link);
@@ -248,7 +235,7 @@ void Search<Pose>::assess() {
 
 template <class Pose>
 void Search<Pose>::weigh_afresh(const Selection& loops) {
-  const auto covariances = fresh_covariances(loops);
+  const auto covariances = estimate_.relative_covariances(loops, options_.threads);
   for (std::size_t k = 0; k < loops.size(); ++k) {
     states_[loops[k]].covariance = covariances[k];
     states_[loops[k]].evidence = weigh_loop(loops[k], covariances[k]);
@@ -403,7 +390,7 @@ bool Search<Pose>::calibrate() {
     if (accepted_[k] && graph_.loops[k].a != graph_.loops[k].b)
       loops.push_back(static_cast<Index>(k));
   }
-  const auto covariances = fresh_covariances(loops);
+  const auto covariances = estimate_.relative_covariances(loops, options_.threads);
   double loop_cost = 0.0;
   double loop_redundancy = 0.0;
   for (std::size_t k = 0; k < loops.size(); ++k) {

@@ -50,7 +50,6 @@ class Search {
   void weigh_afresh(const Selection& loops);
   Evidence weigh_loop(Index loop, const Matrix& covariance) const;
   double fitted_chi2(Index loop, const Matrix& covariance) const;
-  std::vector<Matrix> fresh_covariances(const Selection& loops) const;
 
   Selection in_question() const;
   Selection certain_singles() const;
