@@ -46,10 +46,10 @@ int run(int argc, char** argv) {
   root.require_subcommand(1);
   root.formatter(std::make_shared<HelpFormatter>());
 
-  const std::vector<Verb> verbs = {add_info(root),    add_convert(root), add_simulate(root),
-                                   add_corrupt(root), add_prune(root),   add_optimize(root),
-                                   add_label(root),   add_eval(root),    add_edges(root),
-                                   add_embed(root),   add_report(root)};
+  const std::vector<Verb> verbs = {add_info(root),    add_convert(root),  add_simulate(root),
+                                   add_corrupt(root), add_prune(root),    add_optimize(root),
+                                   add_label(root),   add_eval(root),     add_edges(root),
+                                   add_embed(root),   add_localize(root), add_report(root)};
   try {
     root.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -82,7 +82,8 @@ Verb add_simulate(CLI::App& root) {
                  add_world<SphereOptions, simulate_sphere>(*simulate, "sphere",
                                                            "a spiral over a sphere (3-D)"),
                  add_world<Grid3dOptions, simulate_grid3d>(
-                     *simulate, "grid3d", "a vehicle in a grid of streets and shafts (3-D)")});
+                     *simulate, "grid3d", "a vehicle in a grid of streets and shafts (3-D)"),
+                 add_simulate_network(*simulate)});
 }
 
 }  // namespace isotherm::apps

@@ -16,8 +16,9 @@ using isotherm_test::write_text;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr const char* kVerbs[] = {"info",  "simulate city", "corrupt", "prune",
-                                  "label", "eval loops",    "edges",   "embed"};
+constexpr const char* kVerbs[] = {
+    "info",  "simulate city", "corrupt",          "prune",    "label",         "eval loops",
+    "edges", "embed",         "simulate network", "localize", "eval positions"};
 
 class Contract : public CommandTest {
  protected:

@@ -1,0 +1,277 @@
+#include "isotherm/geometry/localize.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "isotherm/base/error.hpp"
+#include "isotherm/base/statistics.hpp"
+#include "localize/determinacy.hpp"
+#include "localize/initial_placement.hpp"
+#include "localize/placing.hpp"
+#include "localize/range_information.hpp"
+#include "localize/range_problem.hpp"
+#include "localize/robust_refine.hpp"
+
+namespace isotherm::geometry {
+namespace {
+
+using detail::Placement;
+using detail::RangeCheck;
+using detail::RangeProblem;
+using spectral::EdgeVerdict;
+using spectral::Verdict;
+
+class Localization {
+ public:
+  Localization(const RangeNetwork& network, const LocalizeOptions& options)
+      : options_(options),
+        problem_(detail::make_problem(network)),
+        placement_(detail::anchors_only(network, problem_)),
+        anchors_(placement_),
+        gate_(chi_squared_quantile(1.0 - options.significance, 1)) {}
+
+  LocalizeResult run() {
+    const auto trusted = detail::trusted_pairs(problem_, options_);
+    placement_ = detail::place_initially(problem_, anchors_, trusted, gate_, options_);
+    extend();
+    if (options_.method == LocalizeMethod::robust) {
+      decide();
+      leave_out_undetermined();
+    } else {
+      use_ = between_placed();
+      fit();
+    }
+    judge(trusted);
+    explain_the_rest();
+    return finish();
+  }
+
+ private:
+  std::vector<bool> between_placed() const {
+    return detail::ranges_within(problem_, placement_, std::numeric_limits<double>::infinity());
+  }
+
+  void fit() {
+    const auto outcome =
+        detail::refine(problem_, use_, placement_,
+                       {.max_iterations = options_.max_iterations, .progress = options_.progress});
+    result_.iterations += outcome.iterations;
+    converged_ = outcome.converged;
+  }
+
+  // Nodes outside the patches, from those that have a place.
+  void extend() {
+    detail::place_more(problem_, gate_, options_.mirror_gate, placement_);
+    if (options_.method != LocalizeMethod::robust) return;
+    const auto outcome = detail::refine_robustly(problem_, placement_, gate_, options_);
+    result_.iterations += outcome.iterations;
+  }
+
+  // Least squares on the kept ranges and leave-one-out tests of all, in turn until
+  // the kept ranges stay the same.
+  void decide() {
+    constexpr int kMostRounds = 10;
+    use_ = detail::ranges_within(problem_, placement_, gate_);
+    for (int round = 0; round < kMostRounds; ++round) {
+      ++result_.rounds;
+      fit();
+      checks_ = detail::RangeInformation(problem_, use_, placement_).check_ranges();
+      const bool noise_changed = update_noise();
+      bool changed = false;
+      for (std::size_t k = 0; k < use_.size(); ++k) {
+        const bool keep = checks_[k].checked && (keeps_unchecked(k) || checks_[k].chi2 <= gate_);
+        // Late rounds only remove, so that they end.
+        if (keep == use_[k] || (keep && round > kMostRounds / 2)) continue;
+        use_[k] = keep;
+        changed = true;
+      }
+      if (!changed && !noise_changed) return;
+    }
+  }
+
+  bool keeps_unchecked(std::size_t k) const {
+    return use_[k] && checks_[k].redundancy <= kUnchecked;
+  }
+
+  // Scales the standard deviations so that the median deviation of the kept ranges
+  // is that of normal noise. True if that changed much.
+  bool update_noise() {
+    bool changed = false;
+    for (const bool given : {true, false}) {
+      if (given && !options_.estimate_noise) continue;
+      const double factor = noise_factor(given);
+      if (given) result_.noise_factor *= factor;
+      for (std::size_t k = 0; k < problem_.sigmas.size(); ++k) {
+        if (problem_.sigma_given[k] == given) problem_.sigmas[k] *= factor;
+      }
+      for (std::size_t k = 0; k < checks_.size(); ++k) {
+        if (problem_.sigma_given[k] == given) checks_[k].chi2 /= factor * factor;
+      }
+      for (auto& pair : problem_.pairs) {
+        if (given == problem_.sigma_given.front()) pair.sigma *= factor;
+      }
+      changed = changed || std::abs(std::log(factor)) > 0.05;
+    }
+    return changed;
+  }
+
+  double noise_factor(bool given) const {
+    constexpr double kMedianOfNormal = 0.6745;
+    constexpr double kFloor = 1e-10;  // of the typical distance: exact ranges
+    std::vector<double> deviations;
+    double largest = 0.0;
+    for (std::size_t k = 0; k < checks_.size(); ++k) {
+      if (problem_.sigma_given[k] != given) continue;
+      largest = std::max(largest, problem_.sigmas[k]);
+      if (use_[k] && checks_[k].redundancy > kUnchecked) {
+        deviations.push_back(std::abs(checks_[k].deviation));
+      }
+    }
+    constexpr std::size_t kEnough = 10;
+    if (deviations.size() < kEnough) return 1.0;
+    const double factor = detail::lower_median(std::move(deviations)) / kMedianOfNormal;
+    return std::max(factor, kFloor * problem_.typical_distance / largest);
+  }
+
+  // Nodes without one place lose it; what hung on them is looked at again.
+  void leave_out_undetermined() {
+    for (;;) {
+      const auto statuses = detail::determinacy(problem_, use_, placement_);
+      const auto elsewhere =
+          detail::fits_elsewhere(problem_, gate_, options_.mirror_gate, placement_);
+      bool any = false;
+      statuses_.resize(statuses.size(), NodeStatus::not_placed);
+      for (Index v = 0; v < problem_.nodes; ++v) {
+        if (!placement_.placed[v]) continue;
+        statuses_[v] = statuses[v];
+        if (statuses[v] == NodeStatus::localised && elsewhere[v]) {
+          statuses_[v] = NodeStatus::mirrored;
+        }
+        if (statuses_[v] == NodeStatus::localised || problem_.is_anchor[v]) continue;
+        placement_.placed[v] = false;
+        any = true;
+      }
+      if (!any) return;
+      for (std::size_t k = 0; k < use_.size(); ++k) {
+        const auto& range = problem_.ranges[k];
+        use_[k] = use_[k] && placement_.placed[range.from] && placement_.placed[range.to];
+      }
+      decide();
+    }
+  }
+
+  void judge(const std::vector<bool>& trusted) {
+    checks_ = detail::RangeInformation(problem_, use_, placement_).check_ranges();
+    const bool robust = options_.method == LocalizeMethod::robust;
+    for (std::size_t k = 0; k < problem_.ranges.size(); ++k) {
+      EdgeVerdict verdict;
+      verdict.edge = static_cast<std::int64_t>(k);
+      verdict.from = static_cast<std::uint64_t>(problem_.ranges[k].from);
+      verdict.to = static_cast<std::uint64_t>(problem_.ranges[k].to);
+      verdict.score = checks_[k].chi2;
+      verdict.threshold = robust ? gate_ : std::numeric_limits<double>::infinity();
+      if (!checks_[k].checked) {
+        verdict.verdict = trusted[problem_.pair_of[k]] ? Verdict::ambiguous : Verdict::prune;
+        verdict.stage = trusted[problem_.pair_of[k]] ? "no position" : "heat";
+      } else if (checks_[k].redundancy <= kUnchecked) {
+        verdict.verdict = Verdict::ambiguous;
+        verdict.stage = "unchecked";
+      } else {
+        verdict.verdict = use_[k] ? Verdict::keep : Verdict::prune;
+        verdict.stage = robust ? "leave-one-out" : "least-squares";
+      }
+      result_.verdicts.push_back(std::move(verdict));
+    }
+  }
+
+  // Why nodes have no position, from the graph of the ranges no test speaks against.
+  void explain_the_rest() {
+    statuses_.resize(problem_.nodes, NodeStatus::not_placed);
+    std::vector<bool> standing(problem_.ranges.size());
+    for (std::size_t k = 0; k < standing.size(); ++k) {
+      standing[k] = !checks_[k].checked || result_.verdicts[k].verdict != Verdict::prune;
+    }
+    const auto generic = detail::generic_determinacy(problem_, standing, anchors_);
+    for (Index v = 0; v < problem_.nodes; ++v) {
+      if (placement_.placed[v]) {
+        statuses_[v] = problem_.is_anchor[v] ? NodeStatus::anchor : NodeStatus::localised;
+      } else if (statuses_[v] == NodeStatus::not_placed && generic[v] != NodeStatus::localised) {
+        statuses_[v] = generic[v];
+      }
+    }
+  }
+
+  LocalizeResult finish() {
+    result_.covariances = detail::RangeInformation(problem_, use_, placement_).covariances();
+    result_.positions = placement_.positions;
+    for (Index v = 0; v < problem_.nodes; ++v) {
+      if (placement_.placed[v]) continue;
+      result_.positions.col(v).setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+    result_.nodes = statuses_;
+    result_.anchored = problem_.anchored();
+    std::int64_t kept = 0;
+    for (std::size_t k = 0; k < use_.size(); ++k) {
+      if (!problem_.sigma_given[k]) result_.sigma = problem_.sigmas[k];
+      const auto& range = problem_.ranges[k];
+      if (!use_[k] || (problem_.is_anchor[range.from] && problem_.is_anchor[range.to])) continue;
+      const double length =
+          (placement_.positions.col(range.from) - placement_.positions.col(range.to)).norm();
+      result_.chi2 += std::pow((length - range.distance) / problem_.sigmas[k], 2);
+      ++kept;
+    }
+    const auto d = problem_.dimension;
+    const auto localised = result_.count(NodeStatus::localised);
+    const std::int64_t frame = result_.anchored || localised == 0 ? 0 : d * (d + 1) / 2;
+    result_.dof = kept - (d * localised - frame);
+    result_.status = localised == 0 ? LocalizeStatus::no_start
+                     : converged_   ? LocalizeStatus::converged
+                                    : LocalizeStatus::not_converged;
+    return std::move(result_);
+  }
+
+  static constexpr double kUnchecked = 1e-6;  // redundancy of a range nothing checks
+
+  const LocalizeOptions& options_;
+  RangeProblem problem_;
+  Placement placement_;
+  const Placement anchors_;
+  double gate_;
+  std::vector<bool> use_;
+  std::vector<RangeCheck> checks_;
+  std::vector<NodeStatus> statuses_;
+  bool converged_ = true;
+  LocalizeResult result_;
+};
+
+}  // namespace
+
+void LocalizeOptions::validate() const {
+  const auto require = [](bool good, const char* field, const char* expected) {
+    if (!good) throw InvalidArgument(field, expected);
+  };
+  require(significance > 0.0 && significance < 1.0, "significance", "must be in (0, 1)");
+  require(std::isfinite(mirror_gate) && mirror_gate >= 0.0, "mirror_gate",
+          "must be finite and >= 0");
+  require(heat_chance > 0.0 && heat_chance < 1.0, "heat_chance", "must be in (0, 1)");
+  require(patch_size >= 5, "patch_size", "must be >= 5");
+  require(max_iterations >= 1, "max_iterations", "must be >= 1");
+  require(threads >= 0, "threads", "must be >= 0");
+}
+
+std::int64_t LocalizeResult::count(NodeStatus wanted) const {
+  return std::count(nodes.begin(), nodes.end(), wanted);
+}
+
+LocalizeResult localize(const RangeNetwork& network, const LocalizeOptions& options) {
+  options.validate();
+  const auto start = std::chrono::steady_clock::now();
+  auto result = Localization(network, options).run();
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace isotherm::geometry

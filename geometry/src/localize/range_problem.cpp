@@ -1,0 +1,139 @@
+#include "localize/range_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+
+#include <Eigen/SVD>
+
+#include "isotherm/base/error.hpp"
+
+namespace isotherm::geometry::detail {
+namespace {
+
+// Standard deviation, as a part of the typical distance, of ranges that come
+// without one, until the residuals tell.
+constexpr double kProvisionalNoise = 0.05;
+
+void check(const RangeNetwork& network) {
+  const auto fail = [](std::size_t k, const std::string& problem) {
+    throw InvalidArgument("ranges[" + std::to_string(k) + "]", problem);
+  };
+  if (network.dimension != 2 && network.dimension != 3) {
+    throw InvalidArgument("dimension", "must be 2 or 3");
+  }
+  if (network.positions.size() > 0 && (network.positions.rows() != network.dimension ||
+                                       network.positions.cols() != network.node_count())) {
+    throw InvalidArgument("positions", "must be dimension x nodes");
+  }
+  const auto unknown = [&](Index v) { return v < 0 || v >= network.node_count(); };
+  for (std::size_t k = 0; k < network.ranges.size(); ++k) {
+    const auto& range = network.ranges[k];
+    if (unknown(range.from) || unknown(range.to)) fail(k, "joins a node that does not exist");
+    if (range.from == range.to) fail(k, "joins " + network.names[range.from] + " to itself");
+    if (!std::isfinite(range.distance) || range.distance < 0.0) {
+      fail(k, "distance must be finite and >= 0");
+    }
+    if (!std::isfinite(range.variance) || range.variance < 0.0) {
+      fail(k, "variance must be finite and >= 0");
+    }
+  }
+  for (const Index v : network.landmarks) {
+    if (unknown(v)) throw InvalidArgument("landmarks", "name a node that does not exist");
+  }
+}
+
+void merge_pairs(RangeProblem& problem) {
+  std::map<std::pair<Index, Index>, Index> number_of;
+  std::vector<std::vector<double>> distances;
+  std::vector<std::vector<double>> sigmas;
+  for (std::size_t k = 0; k < problem.ranges.size(); ++k) {
+    const auto& range = problem.ranges[k];
+    const auto [entry, added] = number_of.try_emplace(std::minmax(range.from, range.to),
+                                                      static_cast<Index>(problem.pairs.size()));
+    if (added) {
+      problem.pairs.push_back({range.from, range.to});
+      distances.emplace_back();
+      sigmas.emplace_back();
+    }
+    problem.pair_of.push_back(entry->second);
+    distances[entry->second].push_back(range.distance);
+    sigmas[entry->second].push_back(problem.sigmas[k]);
+  }
+  std::vector<spectral::WeightedEdge> edges;
+  for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
+    auto& pair = problem.pairs[p];
+    pair.distance = lower_median(distances[p]);
+    pair.sigma = lower_median(sigmas[p]);
+    edges.push_back({pair.from, pair.to, 1.0});
+  }
+  problem.pair_graph = spectral::WeightedGraph(problem.nodes, std::move(edges));
+}
+
+}  // namespace
+
+bool RangeProblem::anchored() const {
+  return std::find(is_anchor.begin(), is_anchor.end(), true) != is_anchor.end();
+}
+
+double lower_median(std::vector<double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto middle = values.begin() + (static_cast<std::ptrdiff_t>(values.size()) - 1) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+RangeProblem make_problem(const RangeNetwork& network) {
+  check(network);
+  RangeProblem problem;
+  problem.dimension = network.dimension;
+  problem.nodes = network.node_count();
+  problem.ranges = network.ranges;
+  problem.is_anchor.assign(network.names.size(), false);
+  for (const Index v : network.landmarks) {
+    if (network.positions.size() > 0 && network.positions.col(v).allFinite()) {
+      problem.is_anchor[v] = true;
+    }
+  }
+  std::vector<double> distances;
+  for (const auto& range : problem.ranges) distances.push_back(range.distance);
+  problem.typical_distance = distances.empty() ? 0.0 : lower_median(distances);
+  const double floor = std::max(problem.typical_distance, 1e-300);
+  for (const auto& range : problem.ranges) {
+    problem.sigma_given.push_back(range.variance > 0.0);
+    problem.sigmas.push_back(range.variance > 0.0 ? std::sqrt(range.variance)
+                                                  : kProvisionalNoise * floor);
+  }
+  merge_pairs(problem);
+  return problem;
+}
+
+Placement anchors_only(const RangeNetwork& network, const RangeProblem& problem) {
+  Placement placement;
+  placement.positions.setZero(problem.dimension, problem.nodes);
+  placement.placed = problem.is_anchor;
+  for (Index v = 0; v < problem.nodes; ++v) {
+    if (problem.is_anchor[v]) placement.positions.col(v) = network.positions.col(v);
+  }
+  return placement;
+}
+
+bool anchors_span_space(const RangeProblem& problem, const Placement& placement) {
+  constexpr double kClear = 3.0;  // standard deviations of a range
+  constexpr double kFlat = 1e-9;  // of the anchors' extent: a line up to rounding
+  std::vector<Index> anchors;
+  for (Index v = 0; v < problem.nodes; ++v) {
+    if (problem.is_anchor[v] && placement.placed[v]) anchors.push_back(v);
+  }
+  if (static_cast<int>(anchors.size()) <= problem.dimension) return false;
+  const Eigen::MatrixXd points = placement.positions(Eigen::all, anchors);
+  const Eigen::MatrixXd centred = points.colwise() - points.rowwise().mean();
+  const auto values = centred.jacobiSvd().singularValues();
+  const double noise = problem.sigmas.empty() ? 0.0 : kClear * lower_median(problem.sigmas);
+  return values.minCoeff() > std::max(noise, kFlat * values.maxCoeff());
+}
+
+}  // namespace isotherm::geometry::detail

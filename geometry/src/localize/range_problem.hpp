@@ -1,0 +1,55 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "isotherm/geometry/range_network.hpp"
+#include "isotherm/spectral/weighted_graph.hpp"
+
+namespace isotherm::geometry::detail {
+
+/// All ranges between the same two nodes, as one.
+struct RangePair {
+  Index from = 0;
+  Index to = 0;
+  double distance = 0.0;  ///< median
+  double sigma = 0.0;
+};
+
+/// A network as the stages of localisation see it.
+struct RangeProblem {
+  int dimension = 2;
+  Index nodes = 0;
+  std::vector<RangeMeasurement> ranges;
+  std::vector<double> sigmas;          ///< one a range, > 0; provisional where none was given
+  std::vector<bool> sigma_given;       ///< one a range
+  std::vector<bool> is_anchor;         ///< one a node
+  double typical_distance = 0.0;       ///< median of the ranges
+  std::vector<RangePair> pairs;        ///< by order of first appearance
+  spectral::WeightedGraph pair_graph;  ///< edge k is pair k, of weight 1
+  std::vector<Index> pair_of;          ///< range -> pair
+
+  bool anchored() const;
+};
+
+/// Where nodes are believed to be.
+struct Placement {
+  Eigen::MatrixXd positions;  ///< dimension x nodes; meaningless where not placed
+  std::vector<bool> placed;
+};
+
+/// @throws InvalidArgument as `localize` does
+RangeProblem make_problem(const RangeNetwork& network);
+
+/// The anchors where they are, nothing else.
+Placement anchors_only(const RangeNetwork& network, const RangeProblem& problem);
+
+/// Whether the anchors, as far as `placement` has them, stand clear of every line (plane,
+/// in space), so that nothing can be mirrored: by more than the noise of the ranges.
+bool anchors_span_space(const RangeProblem& problem, const Placement& placement);
+
+/// The middle one of `values` (the lower of two); NaN if there are none.
+double lower_median(std::vector<double> values);
+
+}  // namespace isotherm::geometry::detail

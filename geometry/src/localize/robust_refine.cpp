@@ -1,0 +1,87 @@
+#include "localize/robust_refine.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "localize/placing.hpp"
+
+namespace isotherm::geometry::detail {
+namespace {
+
+double deviation_of(const RangeProblem& problem, const Placement& placement, std::size_t k) {
+  const auto& range = problem.ranges[k];
+  const double length =
+      (placement.positions.col(range.from) - placement.positions.col(range.to)).norm();
+  return std::abs(length - range.distance) / problem.sigmas[k];
+}
+
+bool both_placed(const RangeProblem& problem, const Placement& placement, std::size_t k) {
+  return placement.placed[problem.ranges[k].from] && placement.placed[problem.ranges[k].to];
+}
+
+double median_deviation(const RangeProblem& problem, const Placement& placement) {
+  std::vector<double> deviations;
+  for (std::size_t k = 0; k < problem.ranges.size(); ++k) {
+    if (both_placed(problem, placement, k)) {
+      deviations.push_back(deviation_of(problem, placement, k));
+    }
+  }
+  return deviations.empty() ? 0.0 : lower_median(std::move(deviations));
+}
+
+class Stages {
+ public:
+  Stages(const RangeProblem& problem, Placement& placement, const LocalizeOptions& options)
+      : problem_(problem), placement_(placement), options_(options) {}
+
+  void fit(double width, int max_iterations) {
+    constexpr double kReach = 4.0;  // widths beyond which a range has no say
+    const auto use = ranges_within(problem_, placement_, std::pow(kReach * width, 2));
+    const auto outcome =
+        refine(problem_, use, placement_,
+               {.width = width, .max_iterations = max_iterations, .progress = options_.progress});
+    total_.iterations += outcome.iterations;
+    total_.converged = outcome.converged;
+  }
+
+  const RefineOutcome& total() const { return total_; }
+
+ private:
+  const RangeProblem& problem_;
+  Placement& placement_;
+  const LocalizeOptions& options_;
+  RefineOutcome total_;
+};
+
+}  // namespace
+
+std::vector<bool> ranges_within(const RangeProblem& problem, const Placement& placement,
+                                double gate) {
+  std::vector<bool> within(problem.ranges.size(), false);
+  for (std::size_t k = 0; k < within.size(); ++k) {
+    within[k] = both_placed(problem, placement, k) &&
+                std::pow(deviation_of(problem, placement, k), 2) <= gate;
+  }
+  return within;
+}
+
+RefineOutcome refine_robustly(const RangeProblem& problem, Placement& placement, double gate,
+                              const LocalizeOptions& options) {
+  constexpr int kStageIterations = 12;
+  constexpr int kMostRounds = 6;
+  constexpr double kMedianOfNormal = 0.6745;
+  const double narrow = std::sqrt(gate);
+  Stages stages(problem, placement, options);
+  const auto spread = [&] { return 2.0 * median_deviation(problem, placement) / kMedianOfNormal; };
+  for (double width = spread(); width > narrow; width = std::min(0.5 * width, spread())) {
+    stages.fit(width, kStageIterations);
+  }
+  stages.fit(narrow, options.max_iterations);
+  for (int round = 0; round < kMostRounds; ++round) {
+    if (relocate(problem, gate, placement) == 0) break;
+    stages.fit(narrow, options.max_iterations);
+  }
+  return stages.total();
+}
+
+}  // namespace isotherm::geometry::detail

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "isotherm/geometry/localize.hpp"
+#include "localize/range_problem.hpp"
+#include "localize/refine.hpp"
+
+namespace isotherm::geometry::detail {
+
+/// Whether each range's ends are placed and its deviation's square is within the gate.
+std::vector<bool> ranges_within(const RangeProblem& problem, const Placement& placement,
+                                double gate);
+
+/// Robust refinement from a rough start: the loss narrows from where half of the ranges
+/// are well inside down to `sqrt(gate)` standard deviations, ranges far outside
+/// being left out of each stage (a false range between far nodes would fill the
+/// factorisation), then nodes in wrong places are moved and the fit repeated until
+/// none is.
+RefineOutcome refine_robustly(const RangeProblem& problem, Placement& placement, double gate,
+                              const LocalizeOptions& options);
+
+}  // namespace isotherm::geometry::detail

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace isotherm::geometry::detail {
+
+/// A range within a small network.
+struct SmallRange {
+  int from = 0;
+  int to = 0;
+  double distance = 0.0;
+  double sigma = 1.0;
+};
+
+/// A few nodes, of which the first `fixed` stay where they are.
+struct SmallNetwork {
+  Eigen::MatrixXd positions;  ///< dimension x nodes
+  int fixed = 0;
+  std::vector<SmallRange> ranges;
+};
+
+/// |distance between the ends - range| / sigma.
+double deviation(const SmallNetwork& network, const SmallRange& range);
+
+/// Shortest-path distances between all nodes (Floyd and Warshall; infinite where
+/// there is no path), then classical multidimensional scaling: the positions of
+/// best-fitting inner products (W. Torgerson 1952; "MDS-MAP" of Y. Shang et al.
+/// 2003). O(nodes^3). False if the network is not connected.
+bool place_by_scaling(SmallNetwork& network);
+
+/// Moves the free nodes to a minimum of the sum of Geman and McClure's
+/// r^2 / (1 + r^2 / width^2), r being the deviations, by reweighted Gauss-Newton
+/// steps with damping. The width starts where half of the ranges are well inside and
+/// shrinks to `width`. Dense: O(iterations * (dimension * free nodes)^3).
+void fit_robustly(SmallNetwork& network, double width, int max_iterations);
+
+/// Sum over the ranges of min(r^2, limit).
+double truncated_cost(const SmallNetwork& network, double limit);
+
+}  // namespace isotherm::geometry::detail

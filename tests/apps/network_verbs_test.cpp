@@ -1,0 +1,109 @@
+// The verbs on sensor networks.
+#include <algorithm>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "run_command.hpp"
+
+namespace {
+
+using isotherm_test::CommandTest;
+using isotherm_test::read_text;
+using isotherm_test::write_text;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+using NetworkVerbs = CommandTest;
+
+/// The number behind `"key": ` in a JSON text.
+double number_at(const std::string& json, const std::string& key) {
+  const auto place = json.find("\"" + key + "\": ");
+  return place == std::string::npos ? -1.0 : std::stod(json.substr(place + key.size() + 4));
+}
+
+TEST_F(NetworkVerbs, SimulateLocalizeAndEvaluate) {
+  for (const std::string dimension : {"2", "3"}) {
+    run_ok(
+        "simulate network --nodes 120 --degree 25 --noise 0.02 --false-fraction 0.1 --dimension " +
+        dimension +
+        " -o ranges.csv --anchor-file anchors.csv --ground-truth truth.csv"
+        " --labels labels.csv --seed 4");
+    run_ok(
+        "localize ranges.csv --anchors anchors.csv -o positions.csv --verdicts verdicts.csv"
+        " --json result.json");
+    const auto json = read_text(folder / "result.json");
+    for (const char* key : {"isotherm.localize/1", "\"candidates\"", "\"pruned\"", "\"nodes\"",
+                            "\"localised\"", "\"converged\"", "\"options\""}) {
+      EXPECT_THAT(json, HasSubstr(key));
+    }
+    const auto errors =
+        run_ok("eval positions positions.csv truth.csv --leave-out anchors.csv --json -");
+    EXPECT_LT(number_at(errors, "median"), 0.02) << errors;
+    EXPECT_GT(number_at(errors, "nodes"), 90);
+    const auto loops = run_ok("eval loops verdicts.csv labels.csv --json -");
+    EXPECT_GT(number_at(loops, "recall"), 0.9);
+    EXPECT_GT(number_at(loops, "precision"), 0.9);
+  }
+}
+
+TEST_F(NetworkVerbs, WithoutAnchorsPositionsAreAligned) {
+  run_ok(
+      "simulate network --nodes 60 --degree 20 --noise 0.01 -o ranges.csv"
+      " --ground-truth truth.csv");
+  const auto said = run("localize ranges.csv -o positions.csv").err;
+  EXPECT_THAT(said, HasSubstr("up to an isometry"));
+  EXPECT_LT(number_at(run_ok("eval positions positions.csv truth.csv --align --json -"), "rmsd"),
+            0.01);
+}
+
+TEST_F(NetworkVerbs, NodesWithoutAPlaceSaySo) {
+  // A square of anchors, a node they fix, and one that hangs on a single range.
+  write_text(folder / "anchors.csv", "node,x,y\na,0,0\nb,1,0\nc,0,1\nd,1,1\n");
+  write_text(folder / "ranges.csv",
+             "from,to,range,sigma\na,p,0.5,0.01\nb,p,0.5,0.01\nc,p,1.118,0.01\n"
+             "d,p,1.118,0.01\np,q,1,0.01\n");
+  const auto text = run_ok("localize ranges.csv --anchors anchors.csv -o - --verdicts v.csv");
+  EXPECT_THAT(text, StartsWith("node,x,y,status,sigma,cxx,cxy,cyy\na,0,0,anchor,0,0,0,0\np,0."));
+  EXPECT_THAT(text, HasSubstr("\nq,nan,nan,not-rigid,nan,nan,nan,nan\n"));
+  EXPECT_THAT(read_text(folder / "v.csv"), HasSubstr("4,1,5,ambiguous,0,"));
+  const auto strict = run("localize ranges.csv --anchors anchors.csv --strict -o -");
+  EXPECT_EQ(strict.code, 0) << strict.err;
+}
+
+TEST_F(NetworkVerbs, BadInput) {
+  write_text(folder / "ranges.csv", "from,to,range\na,b,1\nb,c,-2\n");
+  const auto negative = run("localize ranges.csv -o out.csv");
+  EXPECT_EQ(negative.code, 3);
+  EXPECT_THAT(negative.err, HasSubstr("ranges.csv:3:5"));
+  write_text(folder / "ranges.csv", "from,to,range\na,b,1\nb,c,nan\n");
+  EXPECT_EQ(run("localize ranges.csv -o out.csv").code, 3);
+  write_text(folder / "ranges.csv", "from,to,range\na,b,1\nb,b,2\n");
+  const auto self = run("localize ranges.csv -o out.csv");
+  EXPECT_EQ(self.code, 2);
+  EXPECT_THAT(self.err, HasSubstr("joins b to itself"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out.csv"));
+
+  write_text(folder / "ranges.csv", "from,to,range\na,b,1\nb,c,2\na,c,1.5\n");
+  write_text(folder / "anchors.csv", "node,x,y\na,0,0\nz,1,1\n");
+  EXPECT_THAT(run("localize ranges.csv --anchors anchors.csv -o -").err,
+              HasSubstr("no range leads to the anchor z"));
+  EXPECT_EQ(run("localize ranges.csv --anchors anchors.csv -o - --strict").code, 2);
+  write_text(folder / "anchors.csv", "node,x,y\na,0,0\na,1,1\n");
+  const auto twice = run("localize ranges.csv --anchors anchors.csv -o -");
+  EXPECT_EQ(twice.code, 3);
+  EXPECT_THAT(twice.err, HasSubstr("anchors.csv:3:1: node already given"));
+  write_text(folder / "anchors.csv", "node,x\na,0\n");
+  EXPECT_EQ(run("localize ranges.csv --anchors anchors.csv -o -").code, 3);
+  EXPECT_EQ(run("simulate network --nodes 1 -o a.csv").code, 2);
+  EXPECT_EQ(run("simulate network --noise 2 -o a.csv").code, 2);
+}
+
+TEST_F(NetworkVerbs, TheSameSeedGivesTheSameBytes) {
+  const auto first = run_ok("simulate network --nodes 50 --false-fraction 0.2 --seed 3 -o -");
+  EXPECT_EQ(run_ok("simulate network --nodes 50 --false-fraction 0.2 --seed 3 -o -"), first);
+  EXPECT_NE(run_ok("simulate network --nodes 50 --false-fraction 0.2 --seed 4 -o -"), first);
+}
+
+}  // namespace

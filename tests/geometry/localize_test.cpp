@@ -1,0 +1,272 @@
+#include "isotherm/geometry/localize.hpp"
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <Eigen/Cholesky>
+
+#include "isotherm/base/error.hpp"
+#include "isotherm/geometry/point_alignment.hpp"
+#include "isotherm/geometry/simulate_network.hpp"
+
+namespace isotherm::geometry {
+namespace {
+
+using spectral::Verdict;
+
+/// Nodes at `truth` with exact ranges between the given pairs.
+RangeNetwork exact_network(const Eigen::MatrixXd& truth,
+                           const std::vector<std::pair<int, int>>& pairs,
+                           const std::vector<Index>& anchors = {}) {
+  RangeNetwork network;
+  network.dimension = static_cast<int>(truth.rows());
+  for (Eigen::Index v = 0; v < truth.cols(); ++v) network.names.push_back(std::to_string(v));
+  network.positions.setConstant(truth.rows(), truth.cols(),
+                                std::numeric_limits<double>::quiet_NaN());
+  network.landmarks = anchors;
+  for (const Index v : anchors) network.positions.col(v) = truth.col(v);
+  for (const auto& [a, b] : pairs) {
+    RangeMeasurement range;
+    range.from = a;
+    range.to = b;
+    range.distance = (truth.col(a) - truth.col(b)).norm();
+    network.ranges.push_back(range);
+  }
+  return network;
+}
+
+std::vector<std::pair<int, int>> all_pairs(const std::vector<int>& nodes) {
+  std::vector<std::pair<int, int>> pairs;
+  for (std::size_t a = 0; a < nodes.size(); ++a) {
+    for (std::size_t b = a + 1; b < nodes.size(); ++b) pairs.emplace_back(nodes[a], nodes[b]);
+  }
+  return pairs;
+}
+
+/// Seven points in general position.
+Eigen::MatrixXd seven_points() {
+  Eigen::MatrixXd points(2, 7);
+  points << 0, 4, 1, 5, 8.5, 9, 12, 0, 0.5, 3, 4, 1, 5, 2.5;
+  return points;
+}
+
+/// Largest error over the nodes with a position, after the best isometry if the
+/// result has no anchors.
+double largest_error(const LocalizeResult& result, const Eigen::MatrixXd& truth) {
+  std::vector<Eigen::Index> with_position;
+  for (Eigen::Index v = 0; v < truth.cols(); ++v) {
+    if (result.positions.col(v).allFinite()) with_position.push_back(v);
+  }
+  Eigen::MatrixXd estimate = result.positions(Eigen::all, with_position);
+  const Eigen::MatrixXd expected = truth(Eigen::all, with_position);
+  if (!result.anchored) estimate = align_points(estimate, expected).apply(estimate);
+  return (estimate - expected).colwise().norm().maxCoeff();
+}
+
+class ExactNetworks : public testing::TestWithParam<std::tuple<int, int>> {};
+
+TEST_P(ExactNetworks, AreRecovered) {
+  const auto [dimension, anchors] = GetParam();
+  const auto simulated = simulate_network({.nodes = 120,
+                                           .dimension = dimension,
+                                           .anchors = anchors,
+                                           .degree = dimension == 2 ? 18.0 : 40.0,
+                                           .noise = 0.0,
+                                           .seed = 3});
+  const auto result = localize(simulated.network);
+  EXPECT_EQ(result.status, LocalizeStatus::converged);
+  EXPECT_EQ(result.anchored, anchors > 0);
+  EXPECT_GE(result.count(NodeStatus::localised) + anchors, 110);
+  EXPECT_LT(largest_error(result, simulated.truth), 1e-9);
+  EXPECT_EQ(count(result.verdicts, Verdict::prune), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Dimensions, ExactNetworks,
+                         testing::Combine(testing::Values(2, 3), testing::Values(0, 10)));
+
+TEST(Localize, FindsFalseAndBiasedRanges) {
+  const auto simulated = simulate_network({.nodes = 150,
+                                           .degree = 18.0,
+                                           .noise = 0.02,
+                                           .false_fraction = 0.15,
+                                           .biased_fraction = 0.1,
+                                           .seed = 5});
+  const auto result = localize(simulated.network);
+  int missed = 0;
+  int wrongly_pruned = 0;
+  int wrong = 0;
+  for (std::size_t k = 0; k < simulated.origins.size(); ++k) {
+    const auto& range = simulated.network.ranges[k];
+    EXPECT_EQ(result.verdicts[k].edge, static_cast<std::int64_t>(k));
+    EXPECT_EQ(result.verdicts[k].from, static_cast<std::uint64_t>(range.from));
+    const bool pruned = result.verdicts[k].verdict == Verdict::prune;
+    const bool bad = simulated.origins[k] != RangeOrigin::measured;
+    wrong += bad ? 1 : 0;
+    missed += bad && !pruned ? 1 : 0;
+    wrongly_pruned += !bad && pruned ? 1 : 0;
+  }
+  EXPECT_LT(missed, 0.05 * wrong);
+  EXPECT_LT(wrongly_pruned, 0.02 * static_cast<double>(simulated.origins.size()));
+  EXPECT_LT(largest_error(result, simulated.truth), 0.1 * simulated.radius);
+}
+
+TEST(Localize, ResultsDoNotDependOnTheThreads) {
+  const auto simulated = simulate_network({.nodes = 80, .false_fraction = 0.1, .seed = 2});
+  const auto one = localize(simulated.network, {.threads = 1});
+  const auto two = localize(simulated.network, {.threads = 2});
+  EXPECT_EQ(one.nodes, two.nodes);
+  for (Index v = 0; v < simulated.network.node_count(); ++v) {
+    if (one.nodes[v] == NodeStatus::localised) {
+      EXPECT_EQ(one.positions.col(v), two.positions.col(v));
+    }
+  }
+}
+
+TEST(Localize, CovariancesMatchTheErrors) {
+  // Normalised squared errors average 1 a coordinate.
+  double sum = 0.0;
+  int terms = 0;
+  for (const std::int64_t anchors : {0, 8}) {
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+      const auto simulated = simulate_network(
+          {.nodes = 60, .anchors = anchors, .degree = 25.0, .noise = 0.01, .seed = seed});
+      const auto result = localize(simulated.network);
+      std::vector<Index> nodes;
+      for (Index v = 0; v < simulated.network.node_count(); ++v) {
+        if (result.nodes[v] == NodeStatus::localised) nodes.push_back(v);
+      }
+      Eigen::MatrixXd estimate = result.positions(Eigen::all, nodes);
+      const Eigen::MatrixXd truth = simulated.truth(Eigen::all, nodes);
+      if (anchors == 0) estimate = align_points(estimate, truth).apply(estimate);
+      for (std::size_t k = 0; k < nodes.size(); ++k) {
+        const Eigen::Vector2d error = estimate.col(k) - truth.col(k);
+        sum += error.dot(result.covariances[nodes[k]].ldlt().solve(error));
+        terms += 2;
+      }
+    }
+  }
+  EXPECT_NEAR(sum / terms, 1.0, 0.15);
+}
+
+TEST(Localize, AChainIsNotRigid) {
+  const auto truth = seven_points();
+  const auto result = localize(exact_network(truth, {{0, 1}, {1, 2}, {2, 3}, {3, 4}}, {0, 1, 2}));
+  EXPECT_EQ(result.status, LocalizeStatus::no_start);
+  EXPECT_EQ(result.nodes[3], NodeStatus::not_rigid);
+  EXPECT_EQ(result.nodes[4], NodeStatus::not_rigid);
+  EXPECT_EQ(result.nodes[5], NodeStatus::not_connected);
+  EXPECT_TRUE(std::isnan(result.positions(0, 3)));
+  EXPECT_EQ(count(result.verdicts, Verdict::prune), 0);
+}
+
+TEST(Localize, WhatHangsOnAHingeIsNotRigid) {
+  // Two complete graphs of four nodes share node 3.
+  auto pairs = all_pairs({0, 1, 2, 3});
+  const auto other = all_pairs({3, 4, 5, 6});
+  pairs.insert(pairs.end(), other.begin(), other.end());
+  const auto truth = seven_points();
+  const auto result = localize(exact_network(truth, pairs, {0, 1, 2}));
+  EXPECT_EQ(result.nodes[3], NodeStatus::localised);
+  for (const int v : {4, 5, 6}) EXPECT_EQ(result.nodes[v], NodeStatus::not_rigid) << v;
+  EXPECT_LT((result.positions.col(3) - truth.col(3)).norm(), 1e-9);
+}
+
+TEST(Localize, TwoRangesLeaveAMirrorImage) {
+  const auto truth = seven_points();
+  auto pairs = all_pairs({0, 1, 2, 3});
+  pairs.emplace_back(0, 4);
+  pairs.emplace_back(1, 4);
+  const auto result = localize(exact_network(truth, pairs, {0, 1, 2}));
+  EXPECT_EQ(result.nodes[3], NodeStatus::localised);
+  EXPECT_EQ(result.nodes[4], NodeStatus::mirrored);
+  EXPECT_TRUE(std::isnan(result.positions(0, 4)));
+}
+
+TEST(Localize, AnchorsOnALineLeaveAMirrorImage) {
+  auto truth = seven_points();
+  truth.row(1).head(3).setZero();
+  const auto result = localize(exact_network(truth, all_pairs({0, 1, 2, 3, 4, 5, 6}), {0, 1, 2}));
+  EXPECT_EQ(result.count(NodeStatus::localised), 0);
+  for (int v = 3; v < 7; ++v) EXPECT_EQ(result.nodes[v], NodeStatus::mirrored) << v;
+}
+
+TEST(Localize, AnIsolatedNodeIsNotConnected) {
+  const auto truth = seven_points();
+  for (const auto& anchors : {std::vector<Index>{}, std::vector<Index>{0, 1, 2}}) {
+    const auto result = localize(exact_network(truth, all_pairs({0, 1, 2, 3, 4, 5}), anchors));
+    EXPECT_EQ(result.nodes[6], NodeStatus::not_connected);
+    EXPECT_LT(largest_error(result, truth), 1e-9);
+  }
+}
+
+TEST(Localize, ASimplexIsUniqueButUnchecked) {
+  const auto truth = seven_points();
+  const auto network = exact_network(truth.leftCols(3), all_pairs({0, 1, 2}));
+  const auto result = localize(network);
+  EXPECT_EQ(result.count(NodeStatus::localised), 3);
+  EXPECT_LT(largest_error(result, truth.leftCols(3)), 1e-9);
+  EXPECT_EQ(count(result.verdicts, Verdict::ambiguous), 3);
+}
+
+TEST(Localize, OfRepeatedRangesThatDisagreeTheOnesThatFitAreKept) {
+  const auto truth = seven_points();
+  auto network = exact_network(truth, all_pairs({0, 1, 2, 3, 4, 5, 6}));
+  for (auto& range : network.ranges) range.variance = 1e-4;
+  auto repeated = network.ranges[4];
+  network.ranges.push_back(repeated);
+  repeated.distance += 2.0;
+  network.ranges.push_back(repeated);
+  const auto result = localize(network, {.estimate_noise = false});
+  EXPECT_EQ(count(result.verdicts, Verdict::prune), 1);
+  EXPECT_EQ(result.verdicts.back().verdict, Verdict::prune);
+  EXPECT_GT(result.verdicts.back().score, result.verdicts.back().threshold);
+  EXPECT_LT(largest_error(result, truth), 1e-6);
+}
+
+TEST(Localize, EmptyAndTinyNetworks) {
+  EXPECT_EQ(localize(RangeNetwork{}).status, LocalizeStatus::no_start);
+  const auto truth = seven_points();
+  const auto pair = localize(exact_network(truth.leftCols(2), {{0, 1}}));
+  EXPECT_EQ(pair.nodes.size(), 2u);
+  const auto anchors = localize(exact_network(truth.leftCols(2), {{0, 1}}, {0, 1}));
+  EXPECT_EQ(anchors.count(NodeStatus::anchor), 2);
+}
+
+TEST(Localize, RejectsBadNetworks) {
+  const auto good = exact_network(seven_points(), all_pairs({0, 1, 2, 3}));
+  const auto message_for = [&](auto spoil) {
+    auto network = good;
+    spoil(network);
+    try {
+      localize(network);
+    } catch (const InvalidArgument& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  using testing::HasSubstr;
+  EXPECT_THAT(message_for([](auto& n) { n.ranges[2].distance = -1.0; }), HasSubstr("ranges[2]"));
+  EXPECT_THAT(message_for([&](auto& n) { n.ranges[2].distance = kNan; }), HasSubstr("ranges[2]"));
+  EXPECT_THAT(message_for([&](auto& n) { n.ranges[1].variance = kNan; }), HasSubstr("ranges[1]"));
+  EXPECT_THAT(message_for([](auto& n) { n.ranges[1].to = 99; }), HasSubstr("ranges[1]"));
+  EXPECT_THAT(message_for([](auto& n) { n.ranges[1].to = n.ranges[1].from; }),
+              HasSubstr("to itself"));
+  EXPECT_THAT(message_for([](auto& n) { n.landmarks = {99}; }), HasSubstr("landmarks"));
+  EXPECT_THROW(localize(good, {.significance = 0.0}), InvalidArgument);
+  EXPECT_THROW(localize(good, {.patch_size = 2}), InvalidArgument);
+}
+
+TEST(Localize, CanBeCancelled) {
+  const auto simulated = simulate_network({.nodes = 100});
+  LocalizeOptions options;
+  options.progress = [](const Progress&) { return false; };
+  EXPECT_THROW(localize(simulated.network, options), Cancelled);
+}
+
+}  // namespace
+}  // namespace isotherm::geometry
