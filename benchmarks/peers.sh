@@ -1,10 +1,15 @@
 #!/usr/bin/env bash
-# Compares every pruning method on B25b, Bovisa04 and the graphs with injected
-# false loops; the table of docs/results/peers.md is its output.
-# usage: benchmarks/peers.sh [NAME ...]   (only graphs whose name contains a NAME)
+# Compares every pruning method on B25b, Bovisa04 and the graphs with injected false
+# loops: writes docs/results/peers.md. Every result is kept in build/peers, so that an
+# interrupted run goes on where it stopped; remove the folder to start anew.
+# usage: benchmarks/peers.sh [--data DIR] [--jobs N] [--page-only]
+# ISOTHERM names the command to measure; without it, the release preset is built.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-scripts/build.sh release >&2
-exec python3 benchmarks/peers.py build/release/apps/isotherm \
-  "${ISOTHERM_DATA:-../shared/data}" "$@"
+if [ -z "${ISOTHERM:-}" ]; then
+  scripts/build.sh release >/dev/null
+  ISOTHERM=$PWD/build/release/apps/isotherm
+fi
+export ISOTHERM
+PYTHONPATH=benchmarks/support exec python3 benchmarks/peers/main.py "$@"

@@ -16,4 +16,4 @@ if [ -z "${ISOTHERM:-}" ]; then
 fi
 export ISOTHERM
 python=$(scripts/python-env.sh)
-exec "$python" benchmarks/reproduce/main.py "$@"
+PYTHONPATH=benchmarks/support exec "$python" benchmarks/reproduce/main.py "$@"

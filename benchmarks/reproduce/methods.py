@@ -65,10 +65,10 @@ class Measure:
 
     def pruned(self, cell, flags, work):
         verdicts = work / "verdicts.csv"
-        seconds = self.command.run("prune", cell.graph, *flags, "-o", work / "pruned.g2o",
-                                   "--verdicts", verdicts)
+        usage = self.command.run("prune", cell.graph, *flags, "-o", work / "pruned.g2o",
+                                 "--verdicts", verdicts)
         quality = self.command.json(work, "eval", "loops", verdicts, cell.labels)
-        return {"seconds": seconds,
+        return {"seconds": usage.ru_utime,
                 **{key: quality[key] for key in ("precision", "recall", "f1")}}
 
     def sweep(self, cell, graph, kernel, widths, work):

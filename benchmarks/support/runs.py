@@ -14,20 +14,24 @@ class Command:
     """The isotherm command, on one thread so that several may run at once."""
 
     OK = (0, 4)  # 4: finished without converging, which is a result
+    TIMED_OUT = 124
 
-    def __init__(self, path):
-        self.path = path
+    def __init__(self, path, time_limit=3600):
+        self.path, self.time_limit = path, time_limit  # seconds
 
     def run(self, *arguments):
-        """Runs the command; returns its user CPU seconds."""
-        line = [self.path, *map(str, arguments), "--threads", "1", "--quiet"]
+        """Runs the command; returns what resources it used (os.wait4)."""
+        line = ["timeout", str(self.time_limit), self.path, *map(str, arguments), "--threads", "1",
+                "--quiet"]
         process = subprocess.Popen(line, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         message = process.stderr.read().decode()
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode == self.TIMED_OUT:
+            raise TimeoutError(f"stopped after {self.time_limit} s")
         if process.returncode not in self.OK:
             raise RuntimeError(f"{' '.join(line)}: exit {process.returncode}: {message}")
-        return usage.ru_utime
+        return usage
 
     def json(self, work, *arguments):
         """Runs the command with --json; returns the document."""
@@ -65,14 +69,22 @@ def run_all(tasks, results, jobs):
         running = {pool.submit(task): key for key, task in missing.items()}
         try:
             for future in concurrent.futures.as_completed(running):
-                results.put(running[future], future.result())
+                results.put(running[future], outcome(future))
                 done += 1
                 elapsed = time.monotonic() - start
-                print(f"reproduce: {done} of {len(tasks)}, {elapsed:.0f} s: {running[future]}",
+                print(f"{done} of {len(tasks)}, {elapsed:.0f} s: {running[future]}",
                       file=sys.stderr, flush=True)
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
+
+
+def outcome(future):
+    """What a task gave, or that it ran out of time, which is a result too."""
+    try:
+        return future.result()
+    except TimeoutError as error:
+        return {"failed": str(error)}
 
 
 def read_csv(path):
