@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "bridges.hpp"
-#include "isotherm/base/random.hpp"
+#include "control_pairs.hpp"
 #include "series_reduction.hpp"
 #include "simple_graph.hpp"
 #include "two_groups.hpp"
@@ -54,34 +54,6 @@ int first_horizon(const WeightedGraph& graph) {
   return 3 * *middle;
 }
 
-/// Pairs of different vertices, each with an edge, that no edge joins; in order of the
-/// first.
-std::vector<VertexPair> random_pairs(const WeightedGraph& graph, std::uint64_t seed) {
-  constexpr std::int64_t kMost = 100'000;
-  constexpr std::int64_t kPerVertex = 50;
-  std::vector<Index> vertices;
-  for (Index vertex = 0; vertex < graph.vertex_count(); ++vertex) {
-    if (!graph.neighbours(vertex).empty()) vertices.push_back(vertex);
-  }
-  Random random(seed);
-  const auto draw = [&] { return vertices[random.index(vertices.size())]; };
-  std::vector<VertexPair> pairs;
-  const auto wanted = std::min(kMost, kPerVertex * static_cast<std::int64_t>(vertices.size()));
-  for (std::int64_t k = 0; k < wanted; ++k) {
-    VertexPair pair;
-    pair.from = draw();
-    pair.to = draw();
-    const auto near = graph.neighbours(pair.from);
-    const bool joined = std::any_of(near.begin(), near.end(),
-                                    [&](const Neighbour& n) { return n.vertex == pair.to; });
-    if (pair.from != pair.to && !joined) pairs.push_back(pair);
-  }
-  std::sort(pairs.begin(), pairs.end(), [](const VertexPair& a, const VertexPair& b) {
-    return std::pair(a.from, a.to) < std::pair(b.from, b.to);
-  });
-  return pairs;
-}
-
 /// Scores of a round from its affinities and the scores of the round before.
 void update_scores(const std::vector<double>& affinities, std::vector<double>& scores) {
   for (std::size_t k = 0; k < scores.size(); ++k) {
@@ -94,7 +66,7 @@ AnnealedHeat anneal_reduced(const WeightedGraph& graph, const AnnealedHeatOption
   AnnealedHeat result;
   result.scores.assign(graph.edges().size(), 0.0);
   result.truth.assign(graph.edges().size(), 1.0);
-  const auto pairs = random_pairs(graph, options.seed);
+  const auto pairs = control_pairs(graph, options.control, options.seed);
   std::vector<double> pair_scores(pairs.size(), 0.0);
   auto trust = result.truth;
   const int horizon = first_horizon(graph);

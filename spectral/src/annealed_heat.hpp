@@ -4,13 +4,15 @@
 #include <vector>
 
 #include "isotherm/base/progress.hpp"
+#include "isotherm/spectral/judge_edges.hpp"
 #include "isotherm/spectral/weighted_graph.hpp"
 
 namespace isotherm::spectral::detail {
 
 struct AnnealedHeatOptions {
   int rounds = 3;       ///< >= 1
-  double chance = 0.5;  ///< edges less likely true take no part in the next round
+  double chance = 0.7;  ///< edges less likely true take no part in the next round
+  ControlGroup control = ControlGroup::anywhere;
   std::uint64_t seed = 1;
   int threads = 0;
   ProgressCallback progress = {};
@@ -40,10 +42,9 @@ inline constexpr double kNoWalk = 1000.0;
 /// degree two is judged as one edge (series_reduction.hpp): each of its edges has the same detour,
 /// which speaks against all or none of them.
 ///
-/// Walk affinities (walk_affinity.hpp) of the edges are compared with those of random
-/// pairs of vertices, which is what false edges are taken to look like
-/// (two_groups.hpp). The first horizon is three times the median detour around an edge, as
-/// far as that is affordable.
+/// Walk affinities (walk_affinity.hpp) of the edges are compared with those of a
+/// control group of pairs of vertices (control_pairs.hpp, two_groups.hpp). The first horizon is
+/// three times the median detour around an edge, as far as that is affordable.
 /// @throws Cancelled
 AnnealedHeat anneal_heat(const WeightedGraph& graph, const AnnealedHeatOptions& options);
 

@@ -147,6 +147,7 @@ JudgeEdgesResult judge_by_threshold(const WeightedGraph& graph, const JudgeEdges
 JudgeEdgesResult judge_by_heat(const WeightedGraph& graph, const JudgeEdgesOptions& options) {
   auto heat = detail::anneal_heat(graph, {.rounds = options.rounds,
                                           .chance = options.chance,
+                                          .control = options.control,
                                           .seed = options.seed,
                                           .threads = options.threads,
                                           .progress = options.progress});
