@@ -154,5 +154,5 @@ int main(int argc, char** argv) {
     draw_sheet(svg, pruned, roll, 192.0, "Pruned: path length from the left end, in bands of 10");
     svg << "</g>\n</svg>\n";
   }
-  return error_pruned < 0.3 * error_shorted ? 0 : 1;
+  return error_pruned < 0.5 * error_shorted ? 0 : 1;
 }
