@@ -12,6 +12,8 @@
 #include "isotherm/spectral/judge_edges.hpp"
 #include "isotherm/spectral/verdict_file.hpp"
 #include "option_verb.hpp"
+#include "report/graph_report.hpp"
+#include "report/report_flags.hpp"
 #include "verbs.hpp"
 
 namespace isotherm::apps {
@@ -26,6 +28,11 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
   bool keep_ambiguous = false;
   std::optional<int> neighbours;  // of a point, where the input is a cloud
   std::optional<double> radius;   // in the unit of the cloud
+  ReportFlags explain;
+
+  struct Input : GraphFile {
+    Eigen::MatrixXd points;  // where the input is a cloud
+  };
 
   int run() {
     if (resolve_or_dump()) return kOk;
@@ -35,26 +42,32 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
     const auto file = read_input();
     for (const auto& diagnostic : file.report.diagnostics) warn(flags, to_string(diagnostic));
     auto result = judge_edges(file.graph, options);
+    const auto left = kept(file.graph, result.verdicts);
+    if (explain.wanted()) {
+      const EdgesRun run{file_title(input), options, file.ids, file.points};
+      write_report(explain, graph_report(file.graph, left, result, run));
+    }
     name_vertices(result.verdicts, file.ids);
     report(result);
-    if (!output.empty()) write_edge_csv(output, kept(file.graph, result.verdicts), file.ids);
+    if (!output.empty()) write_edge_csv(output, left, file.ids);
     if (!verdicts.empty()) write_verdicts(verdicts, result.verdicts);
     write_json(flags.json, to_json(result));
     return kOk;
   }
 
   // The graph of the file, or of the points in it.
-  GraphFile read_input() const {
-    if (!neighbours && !radius) return read_graph(input, {.strict = flags.strict});
+  Input read_input() const {
+    if (!neighbours && !radius) return {read_graph(input, {.strict = flags.strict}), {}};
     auto cloud = geometry::read_points(input);
     const geometry::NeighbourGraphOptions how = {.threads = flags.threads,
                                                  .progress = progress_line(flags)};
-    GraphFile file;
+    Input file;
     file.graph = neighbours ? geometry::nearest_neighbour_graph(cloud.points, *neighbours, how)
                             : geometry::radius_graph(cloud.points, *radius, how);
     file.ids.resize(file.graph.vertex_count());
     std::iota(file.ids.begin(), file.ids.end(), 0);
     file.report = std::move(cloud.report);
+    file.points = std::move(cloud.points);
     return file;
   }
 
@@ -119,6 +132,7 @@ Verb add_edges(CLI::App& root) {
       ->type_name("FILE");
   verb->add_flag("--keep-ambiguous", edges->keep_ambiguous,
                  "keep edges that are not proven either way, such as bridges");
+  edges->explain.add_to(*verb);
   edges->add_flags(*verb);
   return {verb, [edges] { return edges->run(); }};
 }

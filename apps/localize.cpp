@@ -1,9 +1,11 @@
 #include "isotherm/geometry/localize.hpp"
 
 #include <charconv>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
@@ -12,6 +14,8 @@
 #include "isotherm/geometry/range_file.hpp"
 #include "isotherm/spectral/verdict_file.hpp"
 #include "option_verb.hpp"
+#include "report/network_report.hpp"
+#include "report/report_flags.hpp"
 #include "verbs.hpp"
 
 namespace isotherm::apps {
@@ -34,7 +38,9 @@ struct LocalizeVerb : OptionVerb<LocalizeOptions> {
   std::string anchors;
   std::string output;
   std::string verdicts;
+  std::string truth;
   bool file_anchors = false;
+  ReportFlags explain;
   int dimension = 0;
 
   int run() {
@@ -45,6 +51,10 @@ struct LocalizeVerb : OptionVerb<LocalizeOptions> {
     auto result = localize(network, options);
     report(network, result);
     if (!output.empty()) write_positions(output, network, result);
+    if (explain.wanted()) {
+      const LocalizeRun run{file_title(input), options, true_positions(network)};
+      write_report(explain, network_report(network, result, run));
+    }
     if (!verdicts.empty()) {
       name_ends(result.verdicts, network);
       spectral::write_verdicts(verdicts, result.verdicts);
@@ -73,6 +83,26 @@ struct LocalizeVerb : OptionVerb<LocalizeOptions> {
       network.positions.resize(0, 0);
     }
     return std::move(network);
+  }
+
+  // In the order of the network's nodes; NaN for those the file does not have.
+  Eigen::MatrixXd true_positions(const RangeNetwork& network) const {
+    if (truth.empty()) return {};
+    const auto known = read_positions(truth);
+    if (known.dimension() != network.dimension) {
+      throw InvalidArgument("ground-truth", "has another number of coordinates than the network");
+    }
+    std::unordered_map<std::string, Eigen::Index> column_of;
+    for (std::size_t k = 0; k < known.names.size(); ++k) {
+      column_of.emplace(known.names[k], static_cast<Eigen::Index>(k));
+    }
+    Eigen::MatrixXd positions = Eigen::MatrixXd::Constant(network.dimension, network.node_count(),
+                                                          std::numeric_limits<double>::quiet_NaN());
+    for (Index v = 0; v < network.node_count(); ++v) {
+      const auto found = column_of.find(network.names[v]);
+      if (found != column_of.end()) positions.col(v) = known.positions.col(found->second);
+    }
+    return positions;
   }
 
   // Verdict files have numbers for vertices: the names, if all of them are numbers,
@@ -161,6 +191,10 @@ Verb add_localize(CLI::App& root) {
                    "positions, status and covariance of all nodes to write, as CSV")
       ->type_name("FILE");
   verb->add_option("--verdicts", localize->verdicts, "decision and reason a range, as CSV")
+      ->type_name("FILE");
+  localize->explain.add_to(*verb);
+  verb->add_option("--ground-truth", localize->truth,
+                   "true positions, as CSV with node,x,y[,z], for the report")
       ->type_name("FILE");
   localize->add_flags(*verb);
   return {verb, [localize] { return localize->run(); }};

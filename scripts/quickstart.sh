@@ -22,7 +22,8 @@ $isotherm corrupt "$out/clean.g2o" --ground-truth "$out/truth.g2o" --count 400 -
 echo
 echo "== Prune =="
 $isotherm prune "$out/corrupted.g2o" -o "$out/pruned.g2o" \
-  --verdicts "$out/verdicts.csv" --json "$out/result.json"
+  --verdicts "$out/verdicts.csv" --json "$out/result.json" \
+  --report "$out/report.html" --ground-truth "$out/truth.g2o"
 
 echo
 echo "== Optimise what is left, and for comparison what came in =="
@@ -40,3 +41,7 @@ $isotherm eval ate "$out/ruined.g2o" "$out/truth.g2o" --align se
 echo
 echo "== Written to $out =="
 ls -1 "$out"
+
+echo
+echo "== See what was pruned, and why =="
+echo "open this file in a browser: file://$(realpath "$out/report.html")"

@@ -12,6 +12,7 @@
 #include "isotherm/slam/optimize.hpp"
 #include "isotherm/slam/trajectory.hpp"
 #include "prune_words.hpp"
+#include "report_layout.hpp"
 #include "spectral_report.hpp"
 #include "truth_alignment.hpp"
 
@@ -119,15 +120,11 @@ class Explainer {
 
   void add_layout(const std::string& key, const std::string& label,
                   const std::vector<Pose>& poses) {
-    ReportLayout layout{key, label, {}, std::vector<double>(Pose::kDim, 0.0), {}, {}};
-    for (int d = 0; d < Pose::kDim && !poses.empty(); ++d) {
-      layout.origin[d] = poses.front().translation()[d];
+    Eigen::MatrixXd rows(poses.size(), Eigen::Index{Pose::kDim});
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      rows.row(static_cast<Eigen::Index>(k)) = poses[k].translation().transpose();
     }
-    for (const auto& pose : poses) {
-      for (int d = 0; d < Pose::kDim; ++d) {
-        layout.positions.push_back(static_cast<float>(pose.translation()[d] - layout.origin[d]));
-      }
-    }
+    auto layout = report_layout(key, label, rows);
     if (!run_.truth.empty()) add_truth(layout, poses);
     report_.layouts.push_back(std::move(layout));
   }

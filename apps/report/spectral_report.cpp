@@ -11,9 +11,6 @@ namespace {
 
 using namespace spectral;
 
-constexpr Index kSmallGraph = 10000;
-constexpr Index kPairsOfSmallGraph = 50;
-constexpr Index kPairsOfLargeGraph = 12;
 constexpr double kHeatTolerance = 1e-4;
 
 std::vector<std::uint32_t> spread_of(const std::vector<std::uint32_t>& all, std::size_t count) {
@@ -47,26 +44,43 @@ std::vector<std::size_t> spread_evenly(std::size_t size, std::size_t count) {
   return chosen;
 }
 
+std::vector<double> scales_around(double scale) {
+  std::vector<double> scales;
+  for (const double factor : {100.0, 30.0, 10.0, 3.0, 1.0, 0.3, 0.1}) {
+    scales.push_back(factor * scale);
+  }
+  return scales;
+}
+
+std::size_t heat_pairs(Index vertices) {
+  constexpr std::int64_t kWork = 5'000'000;  // pairs x vertices
+  return static_cast<std::size_t>(
+      std::clamp<std::int64_t>(kWork / std::max<std::int64_t>(vertices, 1), 50, 500));
+}
+
 ReportSpectrum report_spectrum(const WeightedGraph& graph, const SpectralReportOptions& options) {
   ReportSpectrum spectrum;
   spectrum.scales = options.scales;
-  if (graph.vertex_count() == 0) {
-    spectrum.note = "The graph has no vertices.";
+  const Index vertices = graph.vertex_count();
+  if (vertices == 0 || vertices > options.most_vertices) {
+    spectrum.note = vertices == 0 ? "The graph has no vertices."
+                                  : fmt::format(
+                                        "Left out for graphs of more than {} vertices; 'isotherm "
+                                        "embed' computes it.",
+                                        options.most_vertices);
     return spectrum;
   }
-  const Index wanted =
-      graph.vertex_count() <= kSmallGraph ? kPairsOfSmallGraph : kPairsOfLargeGraph;
   const auto eigen =
-      smallest_eigenpairs(Laplacian(graph), {.count = std::min(wanted, graph.vertex_count()),
+      smallest_eigenpairs(Laplacian(graph), {.count = std::min(options.pairs, vertices),
                                              .tolerance = 1e-8,
                                              .check_inertia = false,
                                              .progress = options.progress});
   spectrum.values.assign(eigen.values.data(), eigen.values.data() + eigen.count());
   spectrum.null_count = eigen.null_count;
   spectrum.note = fmt::format(
-      "The {} smallest of {} eigenvalues of the Laplacian of the graph "
-      "with all candidates; {} of them are 0, one a connected part.{}",
-      eigen.count(), graph.vertex_count(), eigen.null_count,
+      "The {} smallest of {} eigenvalues of the Laplacian of the graph with all candidates. It "
+      "is 0 once for each connected part, here {} times.{}",
+      eigen.count(), vertices, eigen.null_count,
       eigen.status == EigenStatus::converged ? "" : " Some have not converged to the tolerance.");
   return spectrum;
 }
@@ -76,7 +90,7 @@ ReportHeat report_heat(const WeightedGraph& graph, const std::vector<VertexPair>
                        const SpectralReportOptions& options) {
   ReportHeat heat;
   heat.scales = options.scales;
-  heat.candidates = choose_candidates(verdicts, options.heat_pairs);
+  heat.candidates = choose_candidates(verdicts, heat_pairs(graph.vertex_count()));
   std::vector<VertexPair> chosen;
   for (const auto k : heat.candidates) chosen.push_back(pairs[k]);
   const auto result = heat_distances(

@@ -10,21 +10,30 @@
 
 namespace isotherm::apps {
 
-/// How much of the spectral picture is computed for a report.
+/// How much of the spectral picture is computed for a report. The limits keep a report of
+/// 100,000 vertices at about the cost of writing it.
 struct SpectralReportOptions {
-  std::vector<double> scales;    ///< diffusion times
-  std::size_t heat_pairs = 500;  ///< candidates whose heat distances are computed, at most
-  int threads = 0;               ///< 0: all cores
+  std::vector<double> scales;             ///< diffusion times
+  spectral::Index most_vertices = 20000;  ///< a spectrum is left out beyond
+  spectral::Index pairs = 50;             ///< smallest eigenpairs, null ones included
+  int threads = 0;                        ///< 0: all cores
   ProgressCallback progress = {};
 };
 
-/// The smallest eigenvalues: 50 of a graph of up to 10,000 vertices, 12 of a larger one.
+/// Seven diffusion times around the one of a run, descending.
+std::vector<double> scales_around(double scale);
+
+/// The smallest eigenvalues of the graph's Laplacian, or a note that says why not.
 ReportSpectrum report_spectrum(const spectral::WeightedGraph& graph,
                                const SpectralReportOptions& options);
 
-/// Heat distances of candidates at all scales, to 1e-4. Where there are more candidates
-/// than `heat_pairs`, those not kept come first, each kind evenly spread; the note says
-/// so. `pairs` and `verdicts` (0: kept) have one entry a candidate.
+/// How many heat distances a report computes: 500 of a graph of up to 10,000 vertices,
+/// fewer of larger ones, down to 50.
+std::size_t heat_pairs(spectral::Index vertices);
+
+/// Heat distances of candidates at all scales, to 1e-4. Where there are more than
+/// heat_pairs(), those not kept come first, each kind evenly spread; the note says so.
+/// `pairs` and `verdicts` (0: kept) have one entry a candidate.
 ReportHeat report_heat(const spectral::WeightedGraph& graph,
                        const std::vector<spectral::VertexPair>& pairs,
                        const std::vector<std::uint8_t>& verdicts,

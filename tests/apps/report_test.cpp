@@ -1,5 +1,6 @@
 // The report of a run, as page, document and picture.
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -151,6 +152,57 @@ TEST_F(Report, GraphWithoutLoopsHasAReport) {
   const auto json = document("prune chain.g2o --svg map.svg");
   EXPECT_EQ(json["candidates"]["count"], 0);
   EXPECT_EQ(json["nodes"]["count"], 5);
+}
+
+TEST_F(Report, PlainGraphIsDrawnWhereItsEigenvectorsPutIt) {
+  std::string ring;
+  for (int k = 0; k < 40; ++k) {
+    ring += std::to_string(k) + "," + std::to_string((k + 1) % 40) + "\n" + std::to_string(k) +
+            "," + std::to_string((k + 2) % 40) + "\n";
+  }
+  write_text(folder / "ring.csv", ring);
+  const auto json = document("edges ring.csv");
+  EXPECT_EQ(json["kind"], "graph");
+  EXPECT_EQ(json["candidates"]["count"], 80);
+  // The first two eigenvectors of a ring go round a circle.
+  const auto rows = numbers<float>(json["layouts"][0]["positions"], "f32");
+  ASSERT_EQ(rows.size(), 80U);
+  double x = 0.0;
+  double y = 0.0;
+  for (std::size_t k = 0; k < 40; ++k) {
+    x += rows[2 * k] / 40.0;
+    y += rows[2 * k + 1] / 40.0;
+  }
+  const double radius = std::hypot(rows[0] - x, rows[1] - y);
+  for (std::size_t k = 1; k < 40; ++k) {
+    EXPECT_NEAR(std::hypot(rows[2 * k] - x, rows[2 * k + 1] - y), radius, 1e-4 * radius);
+  }
+}
+
+TEST_F(Report, PointsAreDrawnWhereTheyAre) {
+  write_text(folder / "points.csv", "1e6,0,5\n1000001,0,5\n1000000,1,5\n1000000,0,6.5\n");
+  const auto json = document("edges points.csv --neighbours 3 --method jaccard");
+  EXPECT_EQ(json["dimension"], 3);
+  EXPECT_THAT(numbers<float>(json["layouts"][0]["positions"], "f32"),
+              ElementsAre(0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1.5));
+  EXPECT_EQ(json["layouts"][0]["origin"], Json({1e6, 0.0, 5.0}));
+}
+
+TEST_F(Report, NetworkErrorsAreThoseOfEval) {
+  run_ok(
+      "simulate network --nodes 60 --anchors 6 --seed 4 -o ranges.csv --anchor-file anchors.csv "
+      "--ground-truth truth.csv");
+  const auto json =
+      document("localize ranges.csv --anchors anchors.csv --ground-truth truth.csv -o found.csv");
+  EXPECT_EQ(json["kind"], "network");
+  EXPECT_EQ(json["nodes"]["count"], 60);
+  EXPECT_EQ(numbers<std::int32_t>(json["nodes"]["landmarks"], "i32").size(), 6U);
+  const auto metrics = Json::parse(run_ok("eval positions found.csv truth.csv --json -"));
+  double largest = 0.0;
+  for (const float error : numbers<float>(json["layouts"][0]["errors"], "f32")) {
+    if (error > largest) largest = error;
+  }
+  EXPECT_NEAR(largest, metrics["max"].get<double>(), 1e-6);
 }
 
 TEST_F(Report, OtherDocumentsAreRefused) {

@@ -1,11 +1,14 @@
 import { chart } from './chart';
 import { absent, html, panel } from './dom';
 import { capital, count } from './format';
+import { thinned } from './scene';
 import type { Column, Model } from './model';
 import { VERDICTS } from './model';
 import type { Store } from './store';
 
 const WIDE = 100;
+/** Points drawn at most; more would only lie over each other. */
+const DRAWN = 8000;
 
 /** The smallest positive number of the column and the largest finite one. */
 function extent(values: Float32Array): [number, number] {
@@ -25,8 +28,11 @@ function columnChart(model: Model, store: Store, column: Column): HTMLElement {
     if (!Number.isFinite(value)) return null;
     return log ? Math.max(value, low) : value;
   };
+  const chosen = Array.from(thinned(size, DRAWN));
   const values = (group: number) =>
-    Array.from(column.values, (value, k) => (verdict[k] === group ? drawable(value) : null));
+    chosen.map((k) => (verdict[k] === group ? drawable(column.values[k]) : null));
+  const left =
+    chosen.length < size ? ` Drawn: ${count(chosen.length)} of ${count(size)} ${model.nouns.edges}.` : '';
   const unit = column.unit === '' ? '' : `, ${column.unit}`;
   return html(
     'div',
@@ -37,7 +43,7 @@ function columnChart(model: Model, store: Store, column: Column): HTMLElement {
         description: `${column.label} of ${count(size)} ${model.nouns.edges}`,
         x: { label: `${model.nouns.edge} in order of the file` },
         y: { label: column.label + unit, log },
-        xs: Array.from({ length: size }, (_, k) => k),
+        xs: chosen,
         series: VERDICTS.map((name, group) => ({
           label: name,
           colour: `--${name}`,
@@ -47,7 +53,7 @@ function columnChart(model: Model, store: Store, column: Column): HTMLElement {
       },
       store,
     ),
-    html('p', { class: 'note' }, column.help),
+    html('p', { class: 'note' }, column.help + left),
   );
 }
 

@@ -22,7 +22,7 @@ function table(columns: string[], rows: string[][], label: string): HTMLElement 
 export function roundsPanel(model: Model): HTMLElement {
   const { columns, rows } = model.rounds;
   const title = 'Rounds';
-  if (rows.length === 0) return panel('rounds', title, absent('This run had no rounds.'));
+  if (rows.length === 0) return panel('rounds', title, absent('This run has no table of rounds.'));
   return panel('rounds', title, table(columns, rows, title));
 }
 

@@ -12,16 +12,31 @@ function gaps(values: Float32Array): (number | null)[] {
   return Array.from(values, (value) => (Number.isFinite(value) ? value : null));
 }
 
+// What the input says or the run found about each node, a series a column.
+function columnSeries(model: Model): ChartSeries[] {
+  return model.nodeColumns
+    .filter(({ charted }) => charted)
+    .map((column) => ({
+      label: column.label,
+      colour: '--series-4',
+      kind: 'points',
+      values: gaps(column.values),
+    }));
+}
+
 /** How far every node is from where it truly is, along the path where there is one. */
 export function errorPanel(model: Model, store: Store): HTMLElement {
   const known = model.layouts.filter((layout): layout is Layout & { errors: Float32Array } =>
     layout.errors !== null,
   );
   const title = model.path ? 'Trajectory error along the path' : 'Position errors';
-  if (known.length === 0) return panel('errors', title, absent(model.truthNote));
+  const columns = columnSeries(model);
+  if (known.length + columns.length === 0) {
+    return panel('errors', title, absent(model.truthNote));
+  }
   const xs = model.path ?? Float32Array.from({ length: model.nodeCount }, (_, k) => k);
   const series = known.map((layout, k): ChartSeries => ({
-    label: layout.key,
+    label: known.length === 1 ? 'error' : layout.key,
     ...LOOKS[known.length === 1 ? 1 : k % LOOKS.length],
     kind: model.path ? 'line' : 'points',
     values: gaps(layout.errors),
@@ -32,10 +47,10 @@ export function errorPanel(model: Model, store: Store): HTMLElement {
     chart(
       {
         description: `Distance of ${model.nodeCount} ${model.nouns.nodes} from the truth`,
-        x: { label: model.path ? 'distance along the path, m' : model.nouns.node },
+        x: { label: model.path ? 'distance along the path, m' : `${model.nouns.node}, in order of the file` },
         y: { label: `error, ${model.unit}` },
         xs,
-        series,
+        series: [...series, ...columns],
       },
       store,
     ),

@@ -25,8 +25,16 @@ function fillHeader(header: HTMLElement, model: Model, store: Store): void {
   );
 }
 
-// The map is drawn first; what lies below it waits for the next free moment.
-function fillLater(main: HTMLElement, panels: (() => HTMLElement)[]): void {
+/** Milliseconds after which the rest of the page waits no longer for the map. */
+const PATIENCE = 2000;
+
+// What lies below the map waits until that is drawn, and then comes panel by panel.
+async function fillLater(
+  main: HTMLElement,
+  drawn: Promise<unknown>,
+  panels: (() => HTMLElement)[],
+): Promise<void> {
+  await Promise.race([drawn, new Promise((done) => setTimeout(done, PATIENCE))]);
   const next = () => {
     const make = panels.shift();
     if (!make) {
@@ -36,7 +44,7 @@ function fillLater(main: HTMLElement, panels: (() => HTMLElement)[]): void {
     main.append(make());
     setTimeout(next);
   };
-  requestAnimationFrame(() => setTimeout(next));
+  next();
 }
 
 function show(model: Model): void {
@@ -45,8 +53,9 @@ function show(model: Model): void {
   followTheme(store);
   fillHeader(document.getElementById('header')!, model, store);
   const main = document.getElementById('main')!;
-  main.replaceChildren(summaryPanel(model), mapPanel(model, store), reasonsPanel(model, store));
-  fillLater(main, [
+  const map = mapPanel(model, store);
+  main.replaceChildren(summaryPanel(model), map.element, reasonsPanel(model, store));
+  void fillLater(main, map.drawn, [
     () => tablePanel(model, store),
     () => scorePanel(model, store),
     () => heatPanel(model, store),

@@ -13,8 +13,11 @@ function layerToggle(entry: LegendEntry, store: Store): HTMLElement {
   return html('label', { class: 'layer' }, box, sign, `${entry.label} (${count(entry.count)})`);
 }
 
-/** The map before and after, side by side, with the legend that switches layers. */
-export function mapPanel(model: Model, store: Store): HTMLElement {
+/**
+ * The map before and after, side by side, with the legend that switches layers; and when
+ * it was drawn for the first time.
+ */
+export function mapPanel(model: Model, store: Store): { element: HTMLElement; drawn: Promise<unknown> } {
   const legend = html(
     'div',
     { class: 'legend', role: 'group', 'aria-label': 'Layers' },
@@ -25,11 +28,12 @@ export function mapPanel(model: Model, store: Store): HTMLElement {
     model.dimension === 3
       ? 'Drag to turn, with Shift to move. Click the map first to zoom with the wheel.'
       : 'Drag to move. Click the map first to zoom with the wheel.';
-  return panel(
+  const element = panel(
     'map',
     'Map',
     legend,
     html('div', { class: 'maps' }, ...views.map((view) => view.element)),
     html('p', { class: 'note screen-only' }, `${hint} Click a ${model.nouns.edge} for its reasons.`),
   );
+  return { element, drawn: Promise.all(views.map((view) => view.drawn)) };
 }

@@ -36,6 +36,9 @@ export class MapView {
   private width = 0;
   private height = 0;
   private pending = false;
+  private tellDrawn!: () => void;
+  /** Done when the map was drawn for the first time. */
+  readonly drawn = new Promise<void>((done) => (this.tellDrawn = done));
 
   constructor(
     private readonly model: Model,
@@ -136,6 +139,7 @@ export class MapView {
       colour,
       width,
       opacity: 1,
+      dash: null,
     };
   }
 
@@ -239,6 +243,7 @@ export class MapView {
     this.renderer.render(this.view, this.width, this.height);
     this.drawScaleBar();
     this.element.dataset.drawn = 'true';
+    this.tellDrawn();
   }
 
   private drawScaleBar(): void {

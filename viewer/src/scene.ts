@@ -17,6 +17,8 @@ export interface DrawLayer {
   colour: string;
   width: number;
   opacity: number;
+  /** pixels drawn and left out in turn, or null for solid lines */
+  dash: [number, number] | null;
 }
 
 /** A layer's name, sign and size, as the legend shows it. */
@@ -45,6 +47,9 @@ const COLOURS: Record<string, string> = {
   landmarks: '--landmark',
 };
 
+// Verdicts are told apart without their colours, too.
+const DASHES: Record<string, [number, number]> = { prune: [8, 4], ambiguous: [2, 3] };
+
 /** Three numbers a node whatever the dimension. */
 export function inSpace(positions: Float32Array, dimension: number): Float32Array {
   if (dimension === 3) return positions;
@@ -62,6 +67,24 @@ export function thinned(size: number, limit: number): Uint32Array {
   const chosen = new Uint32Array(kept);
   for (let k = 0; k < kept; ++k) chosen[k] = Math.floor((k * size) / kept);
   return chosen;
+}
+
+/**
+ * Pairs of nodes that are joined, at most about `limit`: where there are more, runs of pairs
+ * that follow each other are drawn as one.
+ */
+export function joined(pairs: Int32Array, limit: number): Int32Array {
+  const size = pairs.length / 2;
+  if (size <= limit) return pairs;
+  const stride = Math.ceil(size / limit);
+  const lines: number[] = [];
+  for (let k = 0; k < size; ) {
+    let end = k + 1;
+    while (end < size && end < k + stride && pairs[2 * end] === pairs[2 * end - 1]) ++end;
+    lines.push(pairs[2 * k], pairs[2 * end - 1]);
+    k = end;
+  }
+  return Int32Array.from(lines);
 }
 
 function isKnown(positions: Float32Array, node: number): boolean {
@@ -96,6 +119,8 @@ function opacityOf(lines: number): number {
 }
 
 const AFTERWARDS = 0.4;
+/** Lines of a path, and nodes, for each candidate of a verdict that may be drawn. */
+const PATH = 2;
 
 const NO_LINES = new Uint32Array(0);
 
@@ -132,19 +157,24 @@ class SceneBuilder {
       lines,
       candidates: sources.map((k) => all[chosen[k]]),
       width: 1.5,
+      dash: DASHES[key] ?? null,
       opacity: key === 'keep' ? 0.9 : opacityOf(chosen.length) * this.fading,
     });
   }
 
   addTrusted(): void {
-    const { trusted, nouns } = this.model;
-    const size = trusted.length / 2;
-    const chosen = thinned(size, 4 * this.limit);
-    const { lines } = linesOf(this.positions, chosen.length, (k) => [
-      trusted[2 * chosen[k]],
-      trusted[2 * chosen[k] + 1],
+    const pairs = joined(this.model.trusted, PATH * this.limit);
+    const size = this.model.trusted.length / 2;
+    if (pairs.length < 2 * size) {
+      this.notes.push(
+        `Drawn: ${count(pairs.length / 2)} straight lines in place of ${count(size)} ` +
+          `${this.model.nouns.trusted} edges.`,
+      );
+    }
+    const { lines } = linesOf(this.positions, pairs.length / 2, (k) => [
+      pairs[2 * k],
+      pairs[2 * k + 1],
     ]);
-    this.noteThinning(chosen.length, size, `${nouns.trusted} edges`);
     this.add('trusted', { lines, width: 1.5, opacity: 0.9 });
   }
 
@@ -153,8 +183,9 @@ class SceneBuilder {
     if (!this.layout.truth) return;
     const truth = inSpace(this.layout.truth, this.model.dimension);
     if (this.model.kind === 'pose_graph') {
-      const steps = Math.max(this.model.nodeCount - 1, 0);
-      const { lines } = linesOf(truth, steps, (k) => [k, k + 1]);
+      const stops = thinned(this.model.nodeCount, PATH * this.limit);
+      const steps = Math.max(stops.length - 1, 0);
+      const { lines } = linesOf(truth, steps, (k) => [stops[k], stops[k + 1]]);
       this.add('truth', { positions: truth, lines, width: 1.5, opacity: 0.9 });
       return;
     }
@@ -171,7 +202,7 @@ class SceneBuilder {
     const landmarks = new Set(this.model.landmarks);
     const known = [...Array(this.model.nodeCount).keys()].filter((k) => isKnown(this.positions, k));
     const moving = known.filter((k) => !landmarks.has(k));
-    const chosen = thinned(moving.length, 4 * this.limit);
+    const chosen = thinned(moving.length, PATH * this.limit);
     this.noteThinning(chosen.length, moving.length, this.model.nouns.nodes);
     this.add('nodes', { points: chosen.map((k) => moving[k]), width: 5, opacity: 1 });
     const fixed = known.filter((k) => landmarks.has(k));
@@ -188,6 +219,7 @@ class SceneBuilder {
       colour: COLOURS[key],
       width: 1,
       opacity: 1,
+      dash: null,
       ...layer,
     });
   }

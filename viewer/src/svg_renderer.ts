@@ -34,6 +34,7 @@ function draw(group: SVGGElement, layers: readonly DrawLayer[], projection: Proj
         stroke: `var(${layer.colour})`,
         'stroke-width': layer.width,
         'stroke-opacity': layer.opacity,
+        'stroke-dasharray': layer.dash?.join(' '),
         'stroke-linecap': layer.points.length > 0 ? 'round' : 'butt',
       }),
     ),

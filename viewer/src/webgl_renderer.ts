@@ -11,6 +11,7 @@ import {
   Points,
   PointsMaterial,
   Scene,
+  Sphere,
   Vector3,
   WebGLRenderer,
 } from 'three';
@@ -42,14 +43,24 @@ function wideLines(layer: DrawLayer): Object3D {
   });
   const geometry = new LineSegmentsGeometry();
   geometry.setPositions(ends);
-  const style = new LineMaterial({ color: colour(layer.colour), linewidth: layer.width });
-  return new LineSegments2(geometry, material(style, layer));
+  const style = new LineMaterial({
+    color: colour(layer.colour),
+    linewidth: layer.width,
+    dashed: layer.dash !== null,
+    dashSize: layer.dash?.[0] ?? 1,
+    gapSize: layer.dash?.[1] ?? 1,
+  });
+  const lines = new LineSegments2(geometry, material(style, layer));
+  if (layer.dash) lines.computeLineDistances();
+  return lines;
 }
 
 function indexed(layer: DrawLayer, index: Uint32Array): BufferGeometry {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(layer.positions, 3));
   geometry.setIndex(new BufferAttribute(index, 1));
+  // Nothing is culled; nodes without a place, which no index names, must not be measured.
+  geometry.boundingSphere = new Sphere(new Vector3(), Infinity);
   return geometry;
 }
 
@@ -95,7 +106,7 @@ function fill(group: Group, layers: readonly DrawLayer[], firstOrder: number): v
 
 /** Draws with the graphics card. The constructor throws where there is no WebGL. */
 export class WebGlRenderer implements Renderer {
-  readonly limit = 50000;
+  readonly limit = 20000;
   readonly element: HTMLCanvasElement;
   private readonly gl: WebGLRenderer;
   private readonly scene = new Scene();
@@ -104,11 +115,15 @@ export class WebGlRenderer implements Renderer {
   private readonly camera = new OrthographicCamera();
 
   constructor(onLost: () => void) {
+    const canvas = document.createElement('canvas');
     // Kept until the next frame, so that the map is there when the page is printed.
-    this.gl = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
+    const wishes = { antialias: true, alpha: true, preserveDrawingBuffer: true };
+    const context = canvas.getContext('webgl2', wishes) as WebGLRenderingContext | null;
+    if (!context) throw new Error('there is no WebGL');
+    this.gl = new WebGLRenderer({ canvas, context, ...wishes });
     this.gl.setClearAlpha(0);
     this.gl.setPixelRatio(Math.min(devicePixelRatio, 2));
-    this.element = this.gl.domElement;
+    this.element = canvas;
     this.element.addEventListener('webglcontextlost', onLost, { once: true });
     this.scene.add(this.base, this.highlight);
   }
@@ -138,7 +153,10 @@ export class WebGlRenderer implements Renderer {
     this.camera.updateProjectionMatrix();
     for (const object of [...this.base.children, ...this.highlight.children]) {
       const style = (object as LineSegments2).material;
-      if (style instanceof LineMaterial) style.resolution.set(width, height);
+      if (!(style instanceof LineMaterial)) continue;
+      style.resolution.set(width, height);
+      // Dashes are given in pixels, whatever the scale.
+      style.dashScale = view.scale;
     }
     this.gl.render(this.scene, this.camera);
   }
