@@ -8,6 +8,7 @@
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/random.hpp"
 #include "isotherm/base/statistics.hpp"
+#include "median.hpp"
 
 namespace isotherm::slam {
 namespace {
@@ -83,12 +84,6 @@ template <class Pose>
 Pose draw_transform(NoiseStyle style, Random& random) {
   return style == NoiseStyle::vertigo ? make_pose(vertigo_tangent<Pose>(random))
                                       : wild_transform<Pose>(random);
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Makes the information matrices of false loops by the chosen policy.

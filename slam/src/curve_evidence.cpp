@@ -9,6 +9,7 @@
 #include "isotherm/base/parallel.hpp"
 #include "isotherm/geometry/curve_stretch.hpp"
 #include "isotherm/slam/odometry.hpp"
+#include "median.hpp"
 
 namespace isotherm::slam {
 namespace {
@@ -84,15 +85,6 @@ class Paths {
   std::vector<Polyline> polylines_;
   std::vector<Place> place_;
 };
-
-// The middle one, or the mean of the middle two; `values` is not empty.
-double median(std::vector<double> values) {
-  const auto half = static_cast<std::ptrdiff_t>(values.size() / 2);
-  const auto upper = values.begin() + half;
-  std::nth_element(values.begin(), upper, values.end());
-  if (values.size() % 2 == 1) return *upper;
-  return 0.5 * (*upper + *std::max_element(values.begin(), upper));
-}
 
 // Scores d / (d + median) of those disparities that there are.
 void score_by_median(std::vector<CurveEvidence>& evidence) {

@@ -11,11 +11,23 @@ void require_positive(const char* name, double value) {
   if (!(value > 0.0)) throw InvalidArgument(name, "must be positive");
 }
 
+Label judge(double translation_error, double rotation_error, const LabelOptions& options) {
+  if (rotation_error > options.max_rotation_error) return Label::incorrect;
+  if (translation_error > options.max_translation_error + options.ignore_band) {
+    return Label::incorrect;
+  }
+  if (translation_error > options.max_translation_error - options.ignore_band) {
+    return Label::ignore;
+  }
+  return Label::correct;
+}
+
 }  // namespace
 
 void LabelOptions::validate() const {
   require_positive("max_translation_error", max_translation_error);
   require_positive("max_rotation_error", max_rotation_error);
+  if (!(ignore_band >= 0.0)) throw InvalidArgument("ignore_band", "must not be negative");
 }
 
 template <class Pose>
@@ -35,9 +47,7 @@ std::vector<EdgeLabel> label_candidates(const PoseGraph<Pose>& graph, const Edge
     const auto& to = truth[constraint.to];
     if (from && to) {
       const Pose error = constraint.T_from_to.inverse() * (from->inverse() * *to);
-      const bool wrong = error.translation().norm() > options.max_translation_error ||
-                         error.rotation_angle() > options.max_rotation_error;
-      row.label = wrong ? Label::incorrect : Label::correct;
+      row.label = judge(error.translation().norm(), error.rotation_angle(), options);
     }
     labels.push_back(row);
   }

@@ -22,9 +22,10 @@ std::vector<std::optional<Pose2>> line_truth() {
   return {Pose2(0, 0, 0), Pose2(1, 0, 0), Pose2(2, 0, 0)};
 }
 
-Label label_of(const Pose2& measured, const std::vector<std::optional<Pose2>>& truth) {
+Label label_of(const Pose2& measured, const std::vector<std::optional<Pose2>>& truth,
+               const LabelOptions& options = {}) {
   const auto graph = line_with_loop(measured);
-  const auto labels = label_candidates(graph, edge_roles(graph), truth);
+  const auto labels = label_candidates(graph, edge_roles(graph), truth, options);
   EXPECT_EQ(labels.size(), 1u);
   EXPECT_EQ(labels[0].edge, 2);
   EXPECT_EQ(labels[0].from, 102u);
@@ -46,12 +47,23 @@ TEST(LabelCandidates, NoTruthNoLabel) {
   EXPECT_EQ(label_of(Pose2(50.0, 0.0, 0.0), truth), Label::ignore);
 }
 
+TEST(LabelCandidates, WhatIsTooCloseToCallIsIgnored) {
+  const LabelOptions options = {.ignore_band = 1.0};
+  EXPECT_EQ(label_of(Pose2(-2.0, 0.99, 0.0), line_truth(), options), Label::correct);
+  EXPECT_EQ(label_of(Pose2(-2.0, 1.01, 0.0), line_truth(), options), Label::ignore);
+  EXPECT_EQ(label_of(Pose2(-2.0, 2.99, 0.0), line_truth(), options), Label::ignore);
+  EXPECT_EQ(label_of(Pose2(-2.0, 3.01, 0.0), line_truth(), options), Label::incorrect);
+  EXPECT_EQ(label_of(Pose2(-2.0, 2.0, 0.51), line_truth(), options), Label::incorrect);
+}
+
 TEST(LabelCandidates, RejectsBadArguments) {
   const auto graph = line_with_loop(Pose2());
   EXPECT_THROW(label_candidates(graph, edge_roles(graph), {Pose2()}), InvalidArgument);
   EXPECT_THROW(
       label_candidates(graph, edge_roles(graph), line_truth(), {.max_translation_error = 0.0}),
       InvalidArgument);
+  EXPECT_THROW(label_candidates(graph, edge_roles(graph), line_truth(), {.ignore_band = -1.0}),
+               InvalidArgument);
 }
 
 }  // namespace

@@ -2,36 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <iterator>
 #include <string>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-
+#include "batches.hpp"
 #include "conflicts.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/statistics.hpp"
+#include "prediction.hpp"
+#include "variance_components.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
 
 using spectral::Verdict;
 
-constexpr int kStepsPerRound = 6;        // of Gauss-Newton
-constexpr int kMostDrops = 3;            // a loop dropped so often is not tried again
-constexpr int kCalibrations = 6;         // of the covariance scales, on proven loops
-constexpr int kLastCalibrations = 2;     // and with the likely ones
-constexpr int kMostDoublings = 4;        // of odometry's covariance, where it refutes every loop
-constexpr double kLargestRescale = 2.0;  // in one calibration
+constexpr int kStepsPerRound = 6;     // of Gauss-Newton
+constexpr int kMostDrops = 3;         // a loop dropped so often is not tried again
+constexpr int kCalibrations = 6;      // of the covariance scales, on proven loops
+constexpr int kLastCalibrations = 2;  // and with the likely ones
+constexpr int kMostDoublings = 4;     // of odometry's covariance, where it refutes every loop
 constexpr double kWorthRescaling = 1.1;
 
 double log_odds_of(double probability) { return std::log(probability / (1.0 - probability)); }
-
-// Index of the set a member belongs to, halving paths on the way.
-Index find_set(std::vector<Index>& parent, Index member) {
-  while (parent[member] != member) member = parent[member] = parent[parent[member]];
-  return member;
-}
 
 }  // namespace
 
@@ -96,19 +89,9 @@ void Search<Pose>::accept_while_possible() {
 
 template <class Pose>
 bool Search<Pose>::accept_next_batch() {
-  const char* rule = "evidence";
-  Selection batch = certain_singles();
-  if (batch.empty()) {
-    rule = "cluster";
-    batch = strongest_clusters();
-  }
-  if (batch.empty() && take_likely_) {
-    rule = "prior";
-    batch = likely_rest();
-  }
-  if (batch.empty()) return false;
-  accept(batch, rule);
-  return true;
+  const Batch batch = next_batch();
+  if (!batch.loops.empty()) accept(batch);
+  return !batch.loops.empty();
 }
 
 // Bounds hold as long as poses move little. At the end every loop that was refuted
@@ -131,6 +114,7 @@ bool Search<Pose>::readmit() {
 template <class Pose>
 void Search<Pose>::settle() {
   do {
+    tell_progress();
     estimate_.update(accepted_, scale_, kStepsPerRound);
   } while (drop_inconsistent());
 }
@@ -139,7 +123,9 @@ template <class Pose>
 bool Search<Pose>::drop_inconsistent() {
   const auto judge = [this](Index loop) {
     auto& state = states_[loop];
-    state.evidence.chi2 = fitted_chi2(loop, state.covariance);
+    const auto& link = graph_.loops[loop];
+    state.evidence.chi2 =
+        fitted_chi2(link, estimate_.residual(link), state.covariance, scale_.loops);
     return state.evidence.chi2 <= gate_;
   };
   Selection doubtful;
@@ -180,37 +166,10 @@ void Search<Pose>::forget_bounds() {
   }
 }
 
-// Chi-squared of an accepted loop against the prediction of all others: with r the
-// fitted residual and P the fitted covariance it is r' (Sigma - P)^-1 r. Along
-// directions that only this loop measures, Sigma - P and r both vanish.
-template <class Pose>
-double Search<Pose>::fitted_chi2(Index loop, const Matrix& covariance) const {
-  const auto& link = graph_.loops[loop];
-  const Tangent r = estimate_.residual(link);
-  const Matrix jacobian = residual_jacobian<Pose>(r);
-  const Matrix fitted = jacobian * covariance * jacobian.transpose();
-  const Eigen::LLT<Matrix> root(link.covariance * scale_.loops);
-  const Tangent whitened = root.matrixL().solve(r);
-  const Matrix half = root.matrixL().solve(fitted);
-  const Matrix known = root.matrixL().solve(half.transpose());
-  const Eigen::SelfAdjointEigenSolver<Matrix> redundancy(Matrix::Identity() - known);
-  const Tangent along = redundancy.eigenvectors().transpose() * whitened;
-  double chi2 = 0.0;
-  for (int d = 0; d < Pose::kDof; ++d) {
-    const double share = redundancy.eigenvalues()[d];
-    if (share > 1e-6) chi2 += along[d] * along[d] / share;
-  }
-  return chi2;
-}
-
 template <class Pose>
 Evidence Search<Pose>::weigh_loop(Index loop, const Matrix& covariance) const {
   const auto& link = graph_.loops[loop];
-  const Tangent r = estimate_.residual(link);
-  const Matrix jacobian = residual_jacobian<Pose>(r);
-  const Matrix spread =
-      link.covariance * scale_.loops + jacobian * covariance * jacobian.transpose();
-  return weigh<Pose>(r, spread, map_);
+  return weigh_prediction(link, estimate_.residual(link), covariance, scale_.loops, map_);
 }
 
 // Accepting loops only ever sharpens predictions, so that an old covariance is an
@@ -235,6 +194,7 @@ void Search<Pose>::assess() {
 
 template <class Pose>
 void Search<Pose>::weigh_afresh(const Selection& loops) {
+  tell_progress();
   const auto covariances = estimate_.relative_covariances(loops, options_.threads);
   for (std::size_t k = 0; k < loops.size(); ++k) {
     states_[loops[k]].covariance = covariances[k];
@@ -255,105 +215,57 @@ typename Search<Pose>::Selection Search<Pose>::in_question() const {
 }
 
 template <class Pose>
-double Search<Pose>::log_odds(Index loop) const {
-  return states_[loop].evidence.log_ratio + prior_log_odds();
+std::vector<double> Search<Pose>::log_odds() const {
+  const double prior = std::log(inlier_fraction_ / (1.0 - inlier_fraction_));
+  std::vector<double> odds;
+  odds.reserve(states_.size());
+  for (const auto& state : states_) odds.push_back(state.evidence.log_ratio + prior);
+  return odds;
 }
 
 template <class Pose>
-typename Search<Pose>::Selection Search<Pose>::certain_singles() const {
-  Selection passing;
-  for (const Index k : in_question()) {
-    if (states_[k].connected && log_odds(k) >= required_odds_) passing.push_back(k);
-  }
-  return most_certain_third(std::move(passing));
-}
-
-template <class Pose>
-typename Search<Pose>::Selection Search<Pose>::likely_rest() const {
-  Selection passing;
-  for (const Index k : in_question()) {
-    if (states_[k].connected && log_odds(k) > 0.0) passing.push_back(k);
-  }
-  return most_certain_third(std::move(passing));
-}
-
-// Every accepted loop sharpens the prediction of the others, so that only the most
-// certain third is taken; and with it those that are beyond doubt already, as long
-// as the expected number of false ones among them is below the significance.
-template <class Pose>
-typename Search<Pose>::Selection Search<Pose>::most_certain_third(Selection passing) const {
-  std::stable_sort(passing.begin(), passing.end(),
-                   [this](Index a, Index b) { return log_odds(a) > log_odds(b); });
-  const std::size_t third = (passing.size() + 2) / 3;
-  std::size_t size = 0;
-  double expected_false = 0.0;
-  for (; size < passing.size(); ++size) {
-    expected_false += 1.0 / (1.0 + std::exp(log_odds(passing[size])));
-    if (size >= third && expected_false > options_.significance) break;
-  }
-  passing.resize(size);
-  return passing;
-}
-
-// Groups of loops that confirm each other. The group's score is what the graph
-// says about its best member, plus what agreement adds: at most the odds against a
-// false loop agreeing with its false neighbour, which is learnt from false loops.
-template <class Pose>
-typename Search<Pose>::Selection Search<Pose>::strongest_clusters() const {
+typename Search<Pose>::Batch Search<Pose>::next_batch() const {
   const Selection eligible = in_question();
-  std::vector<Index> parent(states_.size(), -1);
-  std::vector<double> best(states_.size(), 0.0);
-  std::vector<double> added(states_.size(), 0.0);
-  for (const Index k : eligible) {
-    parent[k] = k;
-    best[k] = log_odds(k);
+  const auto odds = log_odds();
+  const auto passing = [&](double least) {
+    Selection loops;
+    std::ranges::copy_if(eligible, std::back_inserter(loops),
+                         [&](Index k) { return states_[k].connected && odds[k] > least; });
+    return most_certain_third(std::move(loops), odds, options_.significance);
+  };
+  Batch batch{"evidence", passing(required_odds_)};
+  if (batch.loops.empty()) {
+    batch = {"cluster",
+             strongest_clusters(support_, eligible, odds, alike_fraction_, required_odds_)};
   }
-  const double cap = -std::log(alike_fraction_);
-  for (const auto& link : support_.agreeing) {
-    if (parent[link.first] < 0 || parent[link.second] < 0) continue;
-    const Index a = find_set(parent, link.first);
-    const Index b = find_set(parent, link.second);
-    if (a == b || link.gain <= 0.0) continue;
-    parent[b] = a;
-    best[a] = std::max(best[a], best[b]);
-    added[a] += added[b] + std::min(link.gain, cap);
-  }
-  double strongest = required_odds_;
-  for (const Index k : eligible) {
-    if (parent[k] == k) strongest = std::max(strongest, best[k] + added[k]);
-  }
-  Selection chosen;
-  for (const Index k : eligible) {
-    const Index root = find_set(parent, k);
-    const double score = best[root] + added[root];
-    if (score >= required_odds_ && score >= 0.7 * strongest) chosen.push_back(k);
-  }
-  return chosen;
+  if (batch.loops.empty() && take_likely_) batch = {"prior", passing(0.0)};
+  return batch;
 }
 
 template <class Pose>
-void Search<Pose>::accept(const Selection& batch, const char* rule) {
+void Search<Pose>::accept(const Batch& batch) {
   const int round = static_cast<int>(rounds_.size()) + 1;
-  for (const Index k : batch) {
+  for (const Index k : batch.loops) {
     accepted_[k] = true;
     states_[k].round = round;
-    // What it adds to its own prediction: C - C (C + Sigma)^-1 C.
+    const auto& link = graph_.loops[k];
     Matrix& covariance = states_[k].covariance;
-    const Matrix jacobian = residual_jacobian<Pose>(estimate_.residual(graph_.loops[k]));
-    const Matrix sum =
-        jacobian * covariance * jacobian.transpose() + graph_.loops[k].covariance * scale_.loops;
-    const Matrix across = jacobian * covariance;
-    covariance -= across.transpose() * Eigen::LLT<Matrix>(sum).solve(across);
+    covariance = sharpened(link, estimate_.residual(link), covariance, scale_.loops);
   }
   ConsensusRound summary;
-  summary.accepted = static_cast<std::int64_t>(batch.size());
+  summary.accepted = static_cast<std::int64_t>(batch.loops.size());
   summary.in_force = std::count(accepted_.begin(), accepted_.end(), true);
-  summary.rule = rule;
+  summary.rule = batch.rule;
   rounds_.push_back(summary);
-  if (options_.progress) {
-    const auto done = static_cast<std::uint64_t>(summary.in_force);
-    if (!options_.progress({"consensus", done, states_.size()})) throw Cancelled();
-  }
+}
+
+// Between the steps of a round, so that a stop is heeded soon.
+template <class Pose>
+void Search<Pose>::tell_progress() const {
+  if (!options_.progress) return;
+  const auto done =
+      static_cast<std::uint64_t>(std::count(accepted_.begin(), accepted_.end(), true));
+  if (!options_.progress({"consensus", done, states_.size()})) throw Cancelled();
 }
 
 // Beta posteriors with uniform priors; loops that are refuted count as false.
@@ -381,38 +293,12 @@ void Search<Pose>::learn_fractions() {
   alike_fraction_ = (alike + 1.0) / (alike + unlike + 5.0);
 }
 
-// Variance components (F. Helmert): cost over redundancy, for odometry and for the
-// accepted loops, moved towards by a bounded factor.
 template <class Pose>
 bool Search<Pose>::calibrate() {
-  Selection loops;
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    if (accepted_[k] && graph_.loops[k].a != graph_.loops[k].b)
-      loops.push_back(static_cast<Index>(k));
-  }
-  const auto covariances = estimate_.relative_covariances(loops, options_.threads);
-  double loop_cost = 0.0;
-  double loop_redundancy = 0.0;
-  for (std::size_t k = 0; k < loops.size(); ++k) {
-    const auto& link = graph_.loops[loops[k]];
-    const Tangent r = estimate_.residual(link);
-    const Matrix jacobian = residual_jacobian<Pose>(r);
-    loop_cost += r.dot(link.information * r);
-    loop_redundancy +=
-        Pose::kDof - (link.information * jacobian * covariances[k] * jacobian.transpose()).trace() /
-                         scale_.loops;
-  }
-  const double redundancy =
-      Pose::kDof * (static_cast<double>(graph_.steps.size() + loops.size()) -
-                    static_cast<double>(graph_.node_count() - estimate_.component_count()));
-  const auto moved = [](double present, double cost, double freedom) {
-    if (freedom < 1.0) return present;
-    return std::max(
-        1.0, std::clamp(cost / freedom, present / kLargestRescale, present * kLargestRescale));
-  };
-  const CovarianceScale next = {
-      moved(scale_.odometry, estimate_.odometry_cost(), redundancy - loop_redundancy),
-      moved(scale_.loops, loop_cost, loop_redundancy)};
+  std::vector<double> probability = log_odds();
+  for (double& p : probability) p = 1.0 / (1.0 + std::exp(-p));
+  const CovarianceScale next =
+      variance_components(graph_, estimate_, accepted_, probability, scale_, options_.threads);
   const double loop_change = std::abs(std::log(next.loops / scale_.loops));
   const double odometry_change = std::abs(std::log(next.odometry / scale_.odometry));
   if (std::max(loop_change, odometry_change) < std::log(kWorthRescaling)) return false;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "estimate.hpp"
@@ -37,6 +38,11 @@ class Search {
     Matrix covariance = Matrix::Zero();
     Evidence evidence;
   };
+  struct Batch {
+    std::string rule;
+    Selection loops;
+  };
+
   void accept_and_calibrate(int most_calibrations);
   bool odometry_refutes_all() const;
   void accept_while_possible();
@@ -49,20 +55,16 @@ class Search {
   void assess();
   void weigh_afresh(const Selection& loops);
   Evidence weigh_loop(Index loop, const Matrix& covariance) const;
-  double fitted_chi2(Index loop, const Matrix& covariance) const;
 
   Selection in_question() const;
-  Selection certain_singles() const;
-  Selection strongest_clusters() const;
-  Selection likely_rest() const;
-  Selection most_certain_third(Selection passing) const;
-  double log_odds(Index loop) const;
-  double prior_log_odds() const { return std::log(inlier_fraction_ / (1.0 - inlier_fraction_)); }
+  Batch next_batch() const;
+  std::vector<double> log_odds() const;
   void learn_fractions();
-  void accept(const Selection& batch, const char* rule);
+  void accept(const Batch& batch);
   bool calibrate();
   void rescale(const CovarianceScale& scale);
   void find_support();
+  void tell_progress() const;
   void report(ConsensusResult& result) const;
   bool inside_gate(Index loop) const { return states_[loop].evidence.chi2 <= gate_; }
 

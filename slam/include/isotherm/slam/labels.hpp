@@ -37,6 +37,8 @@ struct EdgeLabel {
 struct LabelOptions {
   double max_translation_error = 2.0;  ///< metres, > 0
   double max_rotation_error = 0.5;     ///< radians, > 0
+  /// Metres either side of max_translation_error that are too close to call; >= 0.
+  double ignore_band = 0.0;
 
   void validate() const;
 };
@@ -48,11 +50,14 @@ void visit_fields(Options& options, Visitor&& visit) {
         "metres by which a correct loop may miss the ground truth");
   visit("max_rotation_error", options.max_rotation_error,
         "radians by which a correct loop may miss the ground truth");
+  visit("ignore_band", options.ignore_band,
+        "metres either side of max-translation-error that are too close to call");
 }
 
 /// Labels every candidate by the ground truth of its ends: incorrect iff the
 /// measured relative pose is off by more than an allowed error, ignore if an end
-/// has no ground truth. `truth` has one entry a vertex. One label a candidate.
+/// has no ground truth or the translation is off by about the allowed error. `truth` has one entry
+/// a vertex. One label a candidate.
 /// @throws InvalidArgument if `truth` has another size than the graph.
 template <class Pose>
 std::vector<EdgeLabel> label_candidates(const PoseGraph<Pose>& graph, const EdgeRoles& roles,

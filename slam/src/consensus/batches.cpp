@@ -1,0 +1,70 @@
+#include "batches.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace isotherm::slam::detail {
+namespace {
+
+// Groups with this share of the strongest one's log odds are accepted with it.
+constexpr double kStrong = 0.7;
+
+// Index of the set a member belongs to, halving paths on the way.
+Index find_set(std::vector<Index>& parent, Index member) {
+  while (parent[member] != member) member = parent[member] = parent[parent[member]];
+  return member;
+}
+
+}  // namespace
+
+std::vector<Index> most_certain_third(std::vector<Index> passing,
+                                      const std::vector<double>& log_odds, double expected_false) {
+  std::stable_sort(passing.begin(), passing.end(),
+                   [&](Index a, Index b) { return log_odds[a] > log_odds[b]; });
+  const std::size_t third = (passing.size() + 2) / 3;
+  std::size_t size = 0;
+  double sum = 0.0;
+  for (; size < passing.size(); ++size) {
+    sum += 1.0 / (1.0 + std::exp(log_odds[passing[size]]));
+    if (size >= third && sum > expected_false) break;
+  }
+  passing.resize(size);
+  return passing;
+}
+
+std::vector<Index> strongest_clusters(const MutualSupport& support,
+                                      const std::vector<Index>& eligible,
+                                      const std::vector<double>& log_odds, double alike_fraction,
+                                      double required_odds) {
+  std::vector<Index> parent(log_odds.size(), -1);
+  std::vector<double> best(log_odds.size(), 0.0);
+  std::vector<double> added(log_odds.size(), 0.0);
+  for (const Index k : eligible) {
+    parent[k] = k;
+    best[k] = log_odds[k];
+  }
+  const double cap = -std::log(alike_fraction);
+  for (const auto& link : support.agreeing) {
+    if (parent[link.first] < 0 || parent[link.second] < 0) continue;
+    const Index a = find_set(parent, link.first);
+    const Index b = find_set(parent, link.second);
+    if (a == b || link.gain <= 0.0) continue;
+    parent[b] = a;
+    best[a] = std::max(best[a], best[b]);
+    added[a] += added[b] + std::min(link.gain, cap);
+  }
+  double strongest = required_odds;
+  for (const Index k : eligible) {
+    if (parent[k] == k) strongest = std::max(strongest, best[k] + added[k]);
+  }
+  std::vector<Index> chosen;
+  for (const Index k : eligible) {
+    const Index root = find_set(parent, k);
+    const double score = best[root] + added[root];
+    if (score >= required_odds && score >= kStrong * strongest) chosen.push_back(k);
+  }
+  return chosen;
+}
+
+}  // namespace isotherm::slam::detail

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "mutual_support.hpp"
+
+namespace isotherm::slam::detail {
+
+/// Which of `passing` loops to accept together. Every accepted loop sharpens the
+/// prediction of the others, so that only the most certain third is taken; and with it
+/// those that are beyond doubt already, as long as the expected number of false ones
+/// stays below `expected_false`. `log_odds` has one entry a loop of the graph.
+std::vector<Index> most_certain_third(std::vector<Index> passing,
+                                      const std::vector<double>& log_odds, double expected_false);
+
+/// The strongest groups of loops that confirm each other, among the `eligible` ones.
+///
+/// A group's score is what the graph says about its best member, plus what agreement
+/// adds: at most the odds against a false loop agreeing with its false neighbour,
+/// `alike_fraction` being the fraction of those that do. Groups below `required_odds`
+/// are left, and those well below the strongest, which are better judged afterwards.
+std::vector<Index> strongest_clusters(const MutualSupport& support,
+                                      const std::vector<Index>& eligible,
+                                      const std::vector<double>& log_odds, double alike_fraction,
+                                      double required_odds);
+
+}  // namespace isotherm::slam::detail

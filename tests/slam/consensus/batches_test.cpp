@@ -1,0 +1,41 @@
+#include "consensus/batches.hpp"
+
+#include <gtest/gtest.h>
+
+namespace isotherm::slam::detail {
+namespace {
+
+using Loops = std::vector<Index>;
+
+TEST(MostCertainThird, IsTakenInTheOrderOfCertainty) {
+  const std::vector<double> log_odds = {1.0, 5.0, 3.0, 4.0, 2.0, 6.0};
+  EXPECT_EQ(most_certain_third({0, 1, 2, 3, 4, 5}, log_odds, 0.0), (Loops{5, 1}));
+  EXPECT_EQ(most_certain_third({0, 4}, log_odds, 0.0), (Loops{4})) << "at least one";
+  EXPECT_TRUE(most_certain_third({}, log_odds, 0.0).empty());
+}
+
+TEST(MostCertainThird, AndWithItWhatIsBeyondDoubt) {
+  const std::vector<double> log_odds = {20.0, 30.0, 25.0, 5.0};
+  EXPECT_EQ(most_certain_third({0, 1, 2, 3}, log_odds, 1e-6), (Loops{1, 2, 0}));
+}
+
+TEST(StrongestClusters, AgreementAddsUp) {
+  // Three loops that agree, and one that is by itself.
+  const MutualSupport support{.agreeing = {{0, 1, 8.0}, {1, 2, 7.0}}, .contradicting = {{0, 3}}};
+  const std::vector<double> log_odds = {1.0, 2.0, 1.0, 3.0};
+  const Loops all = {0, 1, 2, 3};
+  EXPECT_EQ(strongest_clusters(support, all, log_odds, 1e-9, 10.0), (Loops{0, 1, 2}));
+  EXPECT_TRUE(strongest_clusters(support, all, log_odds, 0.5, 10.0).empty())
+      << "false loops often agree here, so that agreement proves little";
+  EXPECT_TRUE(strongest_clusters(support, {0, 2, 3}, log_odds, 1e-9, 10.0).empty())
+      << "the one between them is not eligible";
+}
+
+TEST(StrongestClusters, WeakOnesWaitForTheStrongest) {
+  const MutualSupport support{.agreeing = {{0, 1, 40.0}, {2, 3, 9.0}}, .contradicting = {}};
+  const std::vector<double> log_odds = {2.0, 2.0, 2.0, 2.0};
+  EXPECT_EQ(strongest_clusters(support, {0, 1, 2, 3}, log_odds, 1e-30, 10.0), (Loops{0, 1}));
+}
+
+}  // namespace
+}  // namespace isotherm::slam::detail
