@@ -187,9 +187,9 @@ class Explainer {
 
   std::string words_of_map(const OptimizeResult<Pose>& map) const {
     std::string text = fmt::format(
-        "The map was optimised in {} iterations; its {} constraints have a chi-squared of {:.4g} "
-        "in all.",
-        map.iterations, map.chi2.size(), map.chi2.sum());
+        "The map was optimised in {} iteration{}; its {} constraints have a chi-squared of "
+        "{:.4g} in all.",
+        map.iterations, map.iterations == 1 ? "" : "s", map.chi2.size(), map.chi2.sum());
     if (errors_.size() == 2) {
       text += fmt::format(
           " Its trajectory is {:.3g} m RMSE from the truth ({:.3g} m on average, "

@@ -55,7 +55,7 @@ std::vector<double> scales_around(double scale) {
 std::size_t heat_pairs(Index vertices) {
   constexpr std::int64_t kWork = 5'000'000;  // pairs x vertices
   return static_cast<std::size_t>(
-      std::clamp<std::int64_t>(kWork / std::max<std::int64_t>(vertices, 1), 50, 500));
+      std::clamp<std::int64_t>(kWork / std::max<std::int64_t>(vertices, 1), 50, 2000));
 }
 
 ReportSpectrum report_spectrum(const WeightedGraph& graph, const SpectralReportOptions& options) {
@@ -78,8 +78,8 @@ ReportSpectrum report_spectrum(const WeightedGraph& graph, const SpectralReportO
   spectrum.values.assign(eigen.values.data(), eigen.values.data() + eigen.count());
   spectrum.null_count = eigen.null_count;
   spectrum.note = fmt::format(
-      "The {} smallest of {} eigenvalues of the Laplacian of the graph with all candidates. It "
-      "is 0 once for each connected part, here {} times.{}",
+      "The {} smallest of {} eigenvalues of the Laplacian of the graph with all candidates. One "
+      "a connected part is 0: {} here.{}",
       eigen.count(), vertices, eigen.null_count,
       eigen.status == EigenStatus::converged ? "" : " Some have not converged to the tolerance.");
   return spectrum;

@@ -27,7 +27,7 @@ std::vector<double> scales_around(double scale);
 ReportSpectrum report_spectrum(const spectral::WeightedGraph& graph,
                                const SpectralReportOptions& options);
 
-/// How many heat distances a report computes: 500 of a graph of up to 10,000 vertices,
+/// How many heat distances a report computes: 2,000 of a graph of up to 2,500 vertices,
 /// fewer of larger ones, down to 50.
 std::size_t heat_pairs(spectral::Index vertices);
 

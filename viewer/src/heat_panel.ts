@@ -27,7 +27,7 @@ export function heatPanel(model: Model, store: Store): HTMLElement {
   const { heat, candidates, nouns } = model;
   const title = 'Heat distance against scale';
   if (heat.candidates.length === 0) {
-    return panel('heat', title, absent(heat.note || `There are no ${nouns.edges}.`));
+    return panel('heat', title, absent(`There are no ${nouns.edges}.`));
   }
   // uPlot wants ascending abscissae; scales come from global to local.
   const order = [...heat.scales.keys()].sort((a, b) => heat.scales[a] - heat.scales[b]);

@@ -16,6 +16,7 @@ export function stageInWords(stage: string): string {
     unproven: 'unproven: neither confirmed nor refuted by the others',
     unconnected: 'unconnected: nothing accepted joins its ends',
     induction: 'at induction: its weight vanished',
+    'leave-one-out': 'by the other ranges, without this one',
     bridge: 'bridge: the rest of the graph says nothing about it',
     'self-loop': 'it joins a vertex with itself',
     'no-odometry-path': 'no odometry joins its ends',
