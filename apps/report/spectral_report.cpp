@@ -53,9 +53,9 @@ std::vector<double> scales_around(double scale) {
 }
 
 std::size_t heat_pairs(Index vertices) {
-  constexpr std::int64_t kWork = 5'000'000;  // pairs x vertices
-  return static_cast<std::size_t>(
-      std::clamp<std::int64_t>(kWork / std::max<std::int64_t>(vertices, 1), 50, 2000));
+  constexpr double kWork = 1e11;  // pairs x vertices^2
+  const double size = std::max<double>(vertices, 1.0);
+  return static_cast<std::size_t>(std::clamp(kWork / (size * size), 10.0, 2000.0));
 }
 
 ReportSpectrum report_spectrum(const WeightedGraph& graph, const SpectralReportOptions& options) {

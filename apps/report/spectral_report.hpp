@@ -27,8 +27,8 @@ std::vector<double> scales_around(double scale);
 ReportSpectrum report_spectrum(const spectral::WeightedGraph& graph,
                                const SpectralReportOptions& options);
 
-/// How many heat distances a report computes: 2,000 of a graph of up to 2,500 vertices,
-/// fewer of larger ones, down to 50.
+/// How many heat distances a report computes: 2,000 of a graph of up to 7,000 vertices,
+/// fewer of larger ones, 10 from 100,000 on.
 std::size_t heat_pairs(spectral::Index vertices);
 
 /// Heat distances of candidates at all scales, to 1e-4. Where there are more than
