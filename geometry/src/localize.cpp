@@ -64,7 +64,7 @@ class Localization {
 
   // Nodes outside the patches, from those that have a place.
   void extend() {
-    detail::place_more(problem_, gate_, options_.mirror_gate, placement_);
+    detail::place_more(problem_, gate_, placement_);
     if (options_.method != LocalizeMethod::robust) return;
     const auto outcome = detail::refine_robustly(problem_, placement_, gate_, options_);
     result_.iterations += outcome.iterations;
@@ -82,7 +82,7 @@ class Localization {
       const bool noise_changed = update_noise();
       bool changed = false;
       for (std::size_t k = 0; k < use_.size(); ++k) {
-        const bool keep = checks_[k].checked && (keeps_unchecked(k) || checks_[k].chi2 <= gate_);
+        const bool keep = checks_[k].checked && (keeps_untested(k) || checks_[k].chi2 <= gate_);
         // Late rounds only remove, so that they end.
         if (keep == use_[k] || (keep && round > kMostRounds / 2)) continue;
         use_[k] = keep;
@@ -92,9 +92,7 @@ class Localization {
     }
   }
 
-  bool keeps_unchecked(std::size_t k) const {
-    return use_[k] && checks_[k].redundancy <= kUnchecked;
-  }
+  bool keeps_untested(std::size_t k) const { return use_[k] && !checks_[k].is_tested(); }
 
   // Scales the standard deviations so that the median deviation of the kept ranges
   // is that of normal noise. True if that changed much.
@@ -126,41 +124,47 @@ class Localization {
     for (std::size_t k = 0; k < checks_.size(); ++k) {
       if (problem_.sigma_given[k] != given) continue;
       largest = std::max(largest, problem_.sigmas[k]);
-      if (use_[k] && checks_[k].redundancy > kUnchecked) {
+      if (use_[k] && checks_[k].is_tested()) {
         deviations.push_back(std::abs(checks_[k].deviation));
       }
     }
-    constexpr std::size_t kEnough = 10;
-    if (deviations.size() < kEnough) return 1.0;
+    // A given one is corrected only on better evidence than one that has to be found.
+    const std::size_t enough = given ? 10 : 3;
+    if (deviations.size() < enough) return 1.0;
     const double factor = detail::lower_median(std::move(deviations)) / kMedianOfNormal;
     return std::max(factor, kFloor * problem_.typical_distance / largest);
   }
 
-  // Nodes without one place lose it; what hung on them is looked at again.
+  // Nodes without one place lose it, and so do those that hung on them.
   void leave_out_undetermined() {
-    for (;;) {
-      const auto statuses = detail::determinacy(problem_, use_, placement_);
-      const auto elsewhere =
-          detail::fits_elsewhere(problem_, gate_, options_.mirror_gate, placement_);
-      bool any = false;
-      statuses_.resize(statuses.size(), NodeStatus::not_placed);
-      for (Index v = 0; v < problem_.nodes; ++v) {
-        if (!placement_.placed[v]) continue;
-        statuses_[v] = statuses[v];
-        if (statuses[v] == NodeStatus::localised && elsewhere[v]) {
-          statuses_[v] = NodeStatus::mirrored;
-        }
-        if (statuses_[v] == NodeStatus::localised || problem_.is_anchor[v]) continue;
-        placement_.placed[v] = false;
-        any = true;
-      }
-      if (!any) return;
-      for (std::size_t k = 0; k < use_.size(); ++k) {
-        const auto& range = problem_.ranges[k];
-        use_[k] = use_[k] && placement_.placed[range.from] && placement_.placed[range.to];
+    constexpr int kMostRounds = 4;
+    statuses_.assign(problem_.nodes, NodeStatus::not_placed);
+    for (int round = 0; round < kMostRounds; ++round) {
+      if (!drop_undetermined()) return;
+      while (drop_undetermined()) {
       }
       decide();
     }
+  }
+
+  // One look at all placed nodes. True if any was dropped.
+  bool drop_undetermined() {
+    auto statuses = detail::determinacy(problem_, use_, placement_);
+    const auto elsewhere = detail::fits_elsewhere(problem_, gate_, options_, placement_);
+    bool any = false;
+    for (Index v = 0; v < problem_.nodes; ++v) {
+      if (!placement_.placed[v] || problem_.is_anchor[v]) continue;
+      if (statuses[v] == NodeStatus::localised && !elsewhere[v]) continue;
+      const bool has_rival = statuses[v] == NodeStatus::localised;
+      statuses_[v] = has_rival ? NodeStatus::mirrored : statuses[v];
+      placement_.placed[v] = false;
+      any = true;
+    }
+    for (std::size_t k = 0; k < use_.size(); ++k) {
+      const auto& range = problem_.ranges[k];
+      use_[k] = use_[k] && placement_.placed[range.from] && placement_.placed[range.to];
+    }
+    return any;
   }
 
   void judge(const std::vector<bool>& trusted) {
@@ -176,7 +180,7 @@ class Localization {
       if (!checks_[k].checked) {
         verdict.verdict = trusted[problem_.pair_of[k]] ? Verdict::ambiguous : Verdict::prune;
         verdict.stage = trusted[problem_.pair_of[k]] ? "no position" : "heat";
-      } else if (checks_[k].redundancy <= kUnchecked) {
+      } else if (!checks_[k].is_tested()) {
         verdict.verdict = Verdict::ambiguous;
         verdict.stage = "unchecked";
       } else {
@@ -233,8 +237,6 @@ class Localization {
     return std::move(result_);
   }
 
-  static constexpr double kUnchecked = 1e-6;  // redundancy of a range nothing checks
-
   const LocalizeOptions& options_;
   RangeProblem problem_;
   Placement placement_;
@@ -254,8 +256,7 @@ void LocalizeOptions::validate() const {
     if (!good) throw InvalidArgument(field, expected);
   };
   require(significance > 0.0 && significance < 1.0, "significance", "must be in (0, 1)");
-  require(std::isfinite(mirror_gate) && mirror_gate >= 0.0, "mirror_gate",
-          "must be finite and >= 0");
+  require(mirror_chance > 0.0 && mirror_chance < 1.0, "mirror_chance", "must be in (0, 1)");
   require(heat_chance > 0.0 && heat_chance < 1.0, "heat_chance", "must be in (0, 1)");
   require(patch_size >= 5, "patch_size", "must be >= 5");
   require(max_iterations >= 1, "max_iterations", "must be >= 1");

@@ -29,7 +29,7 @@ class Examination {
     if (is_simplex()) return std::move(statuses_);
     reject_if_anchors_are_flat();
     reject_sparse(problem_.dimension + 1, NodeStatus::mirrored);
-    drop_unchecked_ranges();
+    drop_untested_ranges();
     while (reject_floppy(NodeStatus::mirrored) ||
            reject_sparse(problem_.dimension + 1, NodeStatus::mirrored)) {
     }
@@ -134,14 +134,13 @@ class Examination {
   }
 
   // Ranges whose loss would leave a motion: what they hold can also be put elsewhere.
-  void drop_unchecked_ranges() {
-    constexpr double kUnchecked = 1e-6;
+  void drop_untested_ranges() {
     const auto standing = standing_placement();
     const auto checks = RangeInformation(problem_, use_, standing, true).check_ranges();
     for (std::size_t k = 0; k < checks.size(); ++k) {
       const auto& range = problem_.ranges[k];
       if (problem_.is_anchor[range.from] && problem_.is_anchor[range.to]) continue;
-      if (counts(k) && checks[k].redundancy <= kUnchecked) use_[k] = false;
+      if (counts(k) && !checks[k].is_tested()) use_[k] = false;
     }
   }
 

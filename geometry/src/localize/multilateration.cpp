@@ -1,88 +1,112 @@
 #include "localize/multilateration.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
-#include <Eigen/QR>
+#include <Eigen/Geometry>
+
+#include "localize/range_problem.hpp"
 
 namespace isotherm::geometry::detail {
 namespace {
 
-constexpr int kMostSubsets = 120;
-constexpr std::size_t kRefined = 6;  // candidates that are worth a refinement
+constexpr std::size_t kMostChoices = 80;
+constexpr std::size_t kRefined = 4;  // candidates that are worth a refinement
 
 struct Candidate {
-  Eigen::VectorXd position;
+  Point position;
   double cost = 0.0;
 };
 
-// The one or two points at the given distances from d points: two that mirror each
-// other in their hyperplane, or its nearest point where the spheres do not meet.
-void intersect(const Eigen::MatrixXd& centres, const Eigen::VectorXd& distances,
-               std::vector<Eigen::VectorXd>& found) {
-  const auto d = centres.rows();
-  const Eigen::VectorXd origin = centres.col(0);
-  const Eigen::MatrixXd spokes = (centres.rightCols(d - 1).colwise() - origin);
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(spokes);
-  if (qr.rank() < d - 1) return;
-  // Within the hyperplane: 2 spoke . x = distance0^2 - distance^2 + spoke^2.
-  const Eigen::VectorXd right =
-      0.5 * (spokes.colwise().squaredNorm().transpose().array() + distances[0] * distances[0] -
-             distances.tail(d - 1).array().square())
-                .matrix();
-  const Eigen::VectorXd foot = spokes.transpose().completeOrthogonalDecomposition().solve(right);
-  const Eigen::MatrixXd basis = qr.householderQ() * Eigen::MatrixXd::Identity(d, d);
-  const double squared = distances[0] * distances[0] - foot.squaredNorm();
-  const double height = std::sqrt(std::max(0.0, squared));
-  found.push_back(origin + foot + height * basis.col(d - 1));
-  if (height > 0.0) found.push_back(origin + foot - height * basis.col(d - 1));
+// A known place and the distance to it.
+struct Sphere {
+  Point centre;
+  double radius = 0.0;
+};
+
+// The two points where two circles meet, or the one nearest to both.
+void intersect(const Sphere& a, const Sphere& b, std::vector<Candidate>& found) {
+  const Eigen::Vector2d base = b.centre - a.centre;
+  const double length = base.norm();
+  if (length == 0.0) return;
+  const Eigen::Vector2d along = base / length;
+  const Eigen::Vector2d across(-along.y(), along.x());
+  const double foot =
+      (a.radius * a.radius - b.radius * b.radius + length * length) / (2.0 * length);
+  const double height = std::sqrt(std::max(0.0, a.radius * a.radius - foot * foot));
+  const Eigen::Vector2d middle = a.centre + foot * along;
+  found.push_back({middle + height * across});
+  if (height > 0.0) found.push_back({middle - height * across});
 }
 
-// Calls use(subset) for subsets of d out of `count`, all of them or an even sample.
-template <class Use>
-void for_subsets(int count, int d, Use use) {
-  std::vector<std::vector<int>> all;
-  for (int a = 0; a < count; ++a) {
-    for (int b = a + 1; b < count; ++b) {
-      if (d == 2) all.push_back({a, b});
-      for (int c = b + 1; d == 3 && c < count; ++c) all.push_back({a, b, c});
+// The same for three spheres.
+void intersect(const Sphere& a, const Sphere& b, const Sphere& c, std::vector<Candidate>& found) {
+  constexpr double kCollinear = 1e-9;
+  const Eigen::Vector3d base = b.centre - a.centre;
+  const Eigen::Vector3d side = c.centre - a.centre;
+  const double length = base.norm();
+  if (length == 0.0) return;
+  const Eigen::Vector3d x = base / length;
+  const Eigen::Vector3d off = side - side.dot(x) * x;
+  const double width = off.norm();
+  if (width <= kCollinear * length) return;
+  const Eigen::Vector3d y = off / width;
+  const double first =
+      (a.radius * a.radius - b.radius * b.radius + length * length) / (2.0 * length);
+  const double second =
+      (a.radius * a.radius - c.radius * c.radius + side.squaredNorm() - 2.0 * side.dot(x) * first) /
+      (2.0 * width);
+  const double height =
+      std::sqrt(std::max(0.0, a.radius * a.radius - first * first - second * second));
+  const Eigen::Vector3d middle = a.centre + first * x + second * y;
+  const Eigen::Vector3d across = height * x.cross(y);
+  found.push_back({middle + across});
+  if (height > 0.0) found.push_back({middle - across});
+}
+
+// Where every d spheres meet, or those of an even sample of all choices of d.
+std::vector<Candidate> meeting_points(const std::vector<Sphere>& spheres, int d) {
+  std::vector<std::array<std::size_t, 3>> choices;
+  for (std::size_t a = 0; a < spheres.size(); ++a) {
+    for (std::size_t b = a + 1; b < spheres.size(); ++b) {
+      if (d == 2) choices.push_back({a, b, b});
+      for (std::size_t c = b + 1; d == 3 && c < spheres.size(); ++c) choices.push_back({a, b, c});
     }
   }
-  const std::size_t stride = (all.size() + kMostSubsets - 1) / kMostSubsets;
-  for (std::size_t k = 0; k < all.size(); k += std::max<std::size_t>(1, stride)) use(all[k]);
+  std::vector<Candidate> found;
+  const std::size_t stride = choices.size() / kMostChoices + 1;
+  for (std::size_t k = 0; k < choices.size(); k += stride) {
+    const auto [a, b, c] = choices[k];
+    if (d == 2) {
+      intersect(spheres[a], spheres[b], found);
+    } else {
+      intersect(spheres[a], spheres[b], spheres[c], found);
+    }
+  }
+  return found;
 }
 
+// Possible places of the last node, the cheapest first. Of very many ranges an even
+// sample makes them; all count in the cost.
 std::vector<Candidate> candidates(const SmallNetwork& network, double limit) {
-  // Of many ranges the shortest few decide; all of them count in the cost.
-  constexpr std::size_t kMostRanges = 24;
-  const int d = static_cast<int>(network.positions.rows());
-  auto ranges = network.ranges;
-  const auto kept = std::min(kMostRanges, ranges.size());
-  const std::size_t stride = (ranges.size() + kMostRanges - 1) / kMostRanges;
-  for (std::size_t k = 0; k < kept; ++k)
-    ranges[k] = ranges[std::min(k * stride, ranges.size() - 1)];
-  ranges.resize(kept);
-
-  std::vector<Eigen::VectorXd> points;
-  Eigen::MatrixXd centres(d, d);
-  Eigen::VectorXd distances(d);
+  constexpr std::size_t kMostSpheres = 24;
   const int self = static_cast<int>(network.positions.cols()) - 1;
-  for_subsets(static_cast<int>(kept), d, [&](const std::vector<int>& subset) {
-    for (int i = 0; i < d; ++i) {
-      const auto& range = ranges[subset[i]];
-      centres.col(i) = network.positions.col(range.from == self ? range.to : range.from);
-      distances[i] = range.distance;
-    }
-    intersect(centres, distances, points);
-  });
-
-  std::vector<Candidate> result;
+  std::vector<Sphere> spheres;
+  const std::size_t stride = (network.ranges.size() - 1) / kMostSpheres + 1;
+  for (std::size_t k = 0; k < network.ranges.size(); k += stride) {
+    const auto& range = network.ranges[k];
+    const int other = range.from == self ? range.to : range.from;
+    spheres.push_back({network.positions.col(other), range.distance});
+  }
+  auto result = meeting_points(spheres, static_cast<int>(network.positions.rows()));
   auto trial = network;
-  for (const auto& point : points) {
-    trial.positions.col(self) = point;
-    result.push_back({point, truncated_cost(trial, limit)});
+  for (auto& candidate : result) {
+    trial.positions.col(self) = candidate.position;
+    candidate.cost = truncated_cost(trial, limit);
   }
   std::stable_sort(result.begin(), result.end(),
                    [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
@@ -92,15 +116,14 @@ std::vector<Candidate> candidates(const SmallNetwork& network, double limit) {
 }  // namespace
 
 std::optional<Multilateration> multilaterate(SmallNetwork network, double limit) {
-  constexpr int kIterations = 12;
+  constexpr int kIterations = 8;
   const auto self = network.positions.cols() - 1;
   network.fixed = static_cast<int>(self);
+  if (network.ranges.empty()) return std::nullopt;
   std::vector<double> sigmas;
   for (const auto& range : network.ranges) sigmas.push_back(range.sigma);
-  if (sigmas.empty()) return std::nullopt;
-  std::nth_element(sigmas.begin(), sigmas.begin() + sigmas.size() / 2, sigmas.end());
   // Places nearer to each other than this are one.
-  const double apart = 4.0 * sigmas[sigmas.size() / 2];
+  const double apart = 4.0 * lower_median(std::move(sigmas));
 
   std::vector<Candidate> seeds;
   for (const auto& candidate : candidates(network, limit)) {

@@ -11,17 +11,17 @@ namespace isotherm::geometry::detail {
 /// The best place of one node among others that stay where they are, and how much
 /// worse the next best is.
 struct Multilateration {
-  Eigen::VectorXd position;
+  Point position;
   double cost = 0.0;  ///< sum of min(r^2, limit) over the ranges
   /// Of the best place elsewhere; infinite if none was found.
   double rival_cost = 0.0;
 };
 
 /// Places the last node of `network`, all others being fixed and all ranges leading
-/// to it. Every d of the ranges (a spread-out choice of them where there are many)
-/// intersect in two candidates; the cheapest are refined and compared. Nothing if
-/// there are fewer than d ranges or their far ends do not span a line (plane, in
-/// space). `limit` is the chi-squared at which a range counts as an outlier.
+/// to it. Every d of the ranges (an even sample where there are many) meet in two
+/// candidates; the cheapest are refined and compared. Nothing if there are fewer
+/// than d ranges or their far ends do not span a line (plane, in space). `limit` is
+/// what a range that does not fit costs.
 std::optional<Multilateration> multilaterate(SmallNetwork network, double limit);
 
 }  // namespace isotherm::geometry::detail

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "isotherm/base/parallel.hpp"
@@ -12,7 +13,7 @@ namespace {
 
 // Deviations beyond which a range in a patch is taken for false.
 constexpr double kWidth = 3.0;
-constexpr int kIterations = 40;
+constexpr int kIterations = 30;
 
 // The trusted pairs among `members`, ends as places among them.
 std::vector<SmallRange> inner_ranges(const RangeProblem& problem, const std::vector<bool>& trusted,
@@ -62,8 +63,9 @@ Patch place(const RangeProblem& problem, const std::vector<bool>& trusted,
   return {std::move(members), std::move(network.positions)};
 }
 
-std::vector<Index> surroundings(const RangeProblem& problem, const std::vector<bool>& trusted,
-                                Index centre, int limit) {
+// The centre and its closest trusted neighbours, at most `limit` nodes.
+std::vector<Index> closest_neighbours(const RangeProblem& problem, const std::vector<bool>& trusted,
+                                      Index centre, int limit) {
   std::vector<std::pair<double, Index>> neighbours;
   for (const auto& [vertex, edge] : problem.pair_graph.neighbours(centre)) {
     if (trusted[edge]) neighbours.emplace_back(problem.pairs[edge].distance, vertex);
@@ -71,9 +73,36 @@ std::vector<Index> surroundings(const RangeProblem& problem, const std::vector<b
   std::sort(neighbours.begin(), neighbours.end());
   if (static_cast<int>(neighbours.size()) >= limit) neighbours.resize(limit - 1);
   std::vector<Index> members = {centre};
-  for (const auto& [distance, vertex] : neighbours) members.push_back(vertex);
+  for (const auto& neighbour : neighbours) members.push_back(neighbour.second);
   std::sort(members.begin(), members.end());
   return members;
+}
+
+// Adds the node with the most trusted pairs into the patch, again and again. One that a
+// false range leads to has no others, so that it stays outside.
+void grow(const RangeProblem& problem, const std::vector<bool>& trusted, int limit,
+          std::vector<Index>& members) {
+  constexpr int kClear = 2;    // times as many pairs as fix a place: chance does not bring these
+  std::map<Index, int> links;  // of nodes outside
+  const auto count_links = [&](Index member) {
+    for (const auto& [vertex, edge] : problem.pair_graph.neighbours(member)) {
+      if (trusted[edge]) ++links[vertex];
+    }
+  };
+  for (const Index member : members) count_links(member);
+  for (const Index member : members) links.erase(member);
+  std::set<Index> inside(members.begin(), members.end());
+  while (static_cast<int>(inside.size()) < limit) {
+    const auto best =
+        std::max_element(links.begin(), links.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (best == links.end() || best->second < kClear * (problem.dimension + 1)) break;
+    const Index added = best->first;
+    inside.insert(added);
+    count_links(added);
+    std::erase_if(links, [&](const auto& entry) { return inside.contains(entry.first); });
+  }
+  members.assign(inside.begin(), inside.end());
 }
 
 }  // namespace
@@ -85,7 +114,7 @@ int Patch::find(Index node) const {
 }
 
 std::vector<Patch> make_patches(const RangeProblem& problem, const std::vector<bool>& trusted,
-                                const LocalizeOptions& options) {
+                                PatchExtent extent, const LocalizeOptions& options) {
   std::vector<Patch> patches(problem.nodes);
   if (problem.nodes <= options.patch_size) {
     std::vector<Index> all(problem.nodes);
@@ -96,13 +125,16 @@ std::vector<Patch> make_patches(const RangeProblem& problem, const std::vector<b
     patches[owner] = std::move(whole);
     return patches;
   }
-  parallel_for(
-      problem.nodes, options.threads, options.progress, "local maps", [&](std::int64_t index) {
-        const auto centre = static_cast<Index>(index);
-        auto patch =
-            place(problem, trusted, surroundings(problem, trusted, centre, options.patch_size));
-        if (patch.find(centre) >= 0) patches[index] = std::move(patch);
-      });
+  parallel_for(problem.nodes, options.threads, options.progress, "local maps",
+               [&](std::int64_t index) {
+                 const auto centre = static_cast<Index>(index);
+                 auto members = closest_neighbours(problem, trusted, centre, options.patch_size);
+                 keep_rigid_core(problem, trusted, members);
+                 if (extent == PatchExtent::grown)
+                   grow(problem, trusted, options.patch_size, members);
+                 auto patch = place(problem, trusted, std::move(members));
+                 if (patch.find(centre) >= 0) patches[index] = std::move(patch);
+               });
   return patches;
 }
 

@@ -17,12 +17,17 @@ struct Patch {
   int find(Index node) const;
 };
 
+enum class PatchExtent {
+  neighbours,  ///< of the central node only: hard to spoil by false ranges
+  grown,       ///< by the nodes best linked to these: harder to fold under noise
+};
+
 /// The patch of every node, made of the trusted pairs: the node with those of its
-/// neighbours that have at least d + 1 trusted pairs inside the patch (or one to
-/// every member, where these are fewer), placed by scaling, then robustly fitted.
-/// A network of at most `options.patch_size` nodes is one patch, given to its first
-/// node. In parallel; the result does not depend on the threads.
+/// neighbours that have at least d + 1 trusted pairs inside the patch (or one to every
+/// member, where these are fewer), placed by scaling, then robustly fitted. A network
+/// of at most `options.patch_size` nodes is one patch, given to its first node. In
+/// parallel; the result does not depend on the threads.
 std::vector<Patch> make_patches(const RangeProblem& problem, const std::vector<bool>& trusted,
-                                const LocalizeOptions& options);
+                                PatchExtent extent, const LocalizeOptions& options);
 
 }  // namespace isotherm::geometry::detail

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
+#include "isotherm/base/parallel.hpp"
 #include "localize/multilateration.hpp"
 
 namespace isotherm::geometry::detail {
@@ -31,12 +34,26 @@ int agreeing(const SmallNetwork& network, double gate) {
       [&](const SmallRange& range) { return std::pow(deviation(network, range), 2) <= gate; }));
 }
 
-bool try_to_place(const RangeProblem& problem, double gate, double mirror_gate, Index node,
+// What multilateration found for the nodes that were asked about, in parallel.
+std::vector<std::optional<Multilateration>> multilaterate_all(const RangeProblem& problem,
+                                                              double limit,
+                                                              const LocalizeOptions& options,
+                                                              const Placement& placement,
+                                                              const std::vector<Index>& nodes) {
+  std::vector<std::optional<Multilateration>> found(nodes.size());
+  parallel_for(
+      static_cast<std::int64_t>(nodes.size()), options.threads, options.progress, "multilateration",
+      [&](std::int64_t k) { found[k] = multilaterate(star(problem, placement, nodes[k]), limit); });
+  return found;
+}
+
+bool try_to_place(const RangeProblem& problem, double gate, double limit, Index node,
                   Placement& placement) {
+  constexpr double kClear = 6.0;  // a first look; later ones ask for more
   auto network = star(problem, placement, node);
   if (network.fixed <= problem.dimension) return false;
-  const auto found = multilaterate(network, gate);
-  if (!found || found->rival_cost - found->cost < mirror_gate) return false;
+  const auto found = multilaterate(network, limit);
+  if (!found || found->rival_cost - found->cost < kClear) return false;
   network.positions.col(network.fixed) = found->position;
   if (agreeing(network, gate) <= problem.dimension) return false;
   placement.positions.col(node) = found->position;
@@ -44,59 +61,93 @@ bool try_to_place(const RangeProblem& problem, double gate, double mirror_gate, 
   return true;
 }
 
-}  // namespace
-
-Index place_more(const RangeProblem& problem, double gate, double mirror_gate,
-                 Placement& placement) {
-  Index placed = 0;
-  for (bool any = true; any;) {
-    any = false;
-    std::vector<std::pair<Index, Index>> order;  // minus the placed neighbours, node
-    for (Index v = 0; v < problem.nodes; ++v) {
-      if (placement.placed[v]) continue;
-      Index count = 0;
-      for (const auto& neighbour : problem.pair_graph.neighbours(v)) {
-        if (placement.placed[neighbour.vertex]) ++count;
-      }
-      if (count > problem.dimension) order.emplace_back(-count, v);
+// Unplaced nodes with more than d placed neighbours, those with the most first.
+std::vector<Index> next_to_place(const RangeProblem& problem, const Placement& placement) {
+  std::vector<std::pair<Index, Index>> order;  // minus the placed neighbours, node
+  for (Index v = 0; v < problem.nodes; ++v) {
+    if (placement.placed[v]) continue;
+    Index count = 0;
+    for (const auto& neighbour : problem.pair_graph.neighbours(v)) {
+      if (placement.placed[neighbour.vertex]) ++count;
     }
-    std::sort(order.begin(), order.end());
-    for (const auto& [count, node] : order) {
-      if (!try_to_place(problem, gate, mirror_gate, node, placement)) continue;
-      ++placed;
-      any = true;
-    }
+    if (count > problem.dimension) order.emplace_back(-count, v);
   }
-  return placed;
+  std::sort(order.begin(), order.end());
+  std::vector<Index> nodes;
+  for (const auto& entry : order) nodes.push_back(entry.second);
+  return nodes;
 }
 
-Index relocate(const RangeProblem& problem, double gate, Placement& placement) {
+}  // namespace
+
+double outlier_cost(const RangeProblem& problem, const Placement& placement, double gate) {
+  constexpr double kLeast = 4.0;
+  constexpr double kPeak = 0.3989;  // of the standard normal density
+  double within = 0.5;
+  double beyond = 0.5;
+  for (std::size_t k = 0; k < problem.ranges.size(); ++k) {
+    const auto& range = problem.ranges[k];
+    if (!placement.placed[range.from] || !placement.placed[range.to]) continue;
+    const double length =
+        (placement.positions.col(range.from) - placement.positions.col(range.to)).norm();
+    const double deviation = (length - range.distance) / problem.sigmas[k];
+    (deviation * deviation <= gate ? within : beyond) += 1.0;
+  }
+  // A false range has any length up to about twice the usual one.
+  const double span = 2.0 * problem.typical_distance / lower_median(problem.sigmas);
+  return std::max(kLeast, 2.0 * std::log(within / beyond * kPeak * span));
+}
+
+void place_more(const RangeProblem& problem, double gate, Placement& placement) {
+  for (bool any = true; any;) {
+    any = false;
+    for (const Index node : next_to_place(problem, placement)) {
+      any = try_to_place(problem, gate, gate, node, placement) || any;
+    }
+  }
+}
+
+Index relocate(const RangeProblem& problem, double gate, const LocalizeOptions& options,
+               Placement& placement) {
   constexpr double kGain = 2.0;  // of the cost, for which a move is worth it
-  Index moved = 0;
+  const double limit = outlier_cost(problem, placement, gate);
+  std::vector<Index> suspects;
   for (Index v = 0; v < problem.nodes; ++v) {
     if (!placement.placed[v] || problem.is_anchor[v]) continue;
     const auto network = star(problem, placement, v);
     const auto count = static_cast<int>(network.ranges.size());
-    if (count <= problem.dimension || agreeing(network, gate) == count) continue;
-    const auto found = multilaterate(network, gate);
-    if (!found || truncated_cost(network, gate) - found->cost < kGain) continue;
-    placement.positions.col(v) = found->position;
+    if (count > problem.dimension && agreeing(network, gate) < count) suspects.push_back(v);
+  }
+  const auto found = multilaterate_all(problem, limit, options, placement, suspects);
+  Index moved = 0;
+  for (std::size_t k = 0; k < suspects.size(); ++k) {
+    if (!found[k]) continue;
+    // Neighbours may have moved in the meantime: both places are judged anew.
+    auto network = star(problem, placement, suspects[k]);
+    const double before = truncated_cost(network, limit);
+    network.positions.col(network.fixed) = found[k]->position;
+    if (before - truncated_cost(network, limit) < kGain) continue;
+    placement.positions.col(suspects[k]) = found[k]->position;
     ++moved;
   }
   return moved;
 }
 
-std::vector<bool> fits_elsewhere(const RangeProblem& problem, double gate, double mirror_gate,
-                                 const Placement& placement) {
+std::vector<bool> fits_elsewhere(const RangeProblem& problem, double gate,
+                                 const LocalizeOptions& options, const Placement& placement) {
   std::vector<bool> result(problem.nodes, false);
   // Without anchors a simplex may be mirrored as it is.
   const auto placed = std::count(placement.placed.begin(), placement.placed.end(), true);
   if (!problem.anchored() && placed <= problem.dimension + 1) return result;
+  std::vector<Index> nodes;
   for (Index v = 0; v < problem.nodes; ++v) {
-    if (!placement.placed[v] || problem.is_anchor[v]) continue;
-    const auto network = star(problem, placement, v);
-    const auto found = multilaterate(network, gate);
-    result[v] = found && found->rival_cost - found->cost < mirror_gate;
+    if (placement.placed[v] && !problem.is_anchor[v]) nodes.push_back(v);
+  }
+  const double clear = -2.0 * std::log(options.mirror_chance);
+  const double limit = outlier_cost(problem, placement, gate);
+  const auto found = multilaterate_all(problem, limit, options, placement, nodes);
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    result[nodes[k]] = found[k] && found[k]->rival_cost - found[k]->cost < clear;
   }
   return result;
 }

@@ -26,7 +26,7 @@ RangeInformation::RangeInformation(const RangeProblem& problem, const std::vecto
     unknown_nodes_.push_back(v);
   }
   std::vector<Eigen::Triplet<double, Index>> entries;
-  const auto add_block = [&](Index a, Index b, const Eigen::MatrixXd& block) {
+  const auto add_block = [&](Index a, Index b, const Block& block) {
     if (a < 0 || b < 0) return;
     for (int i = 0; i < d; ++i) {
       for (int j = 0; j < d; ++j) {
@@ -34,12 +34,12 @@ RangeInformation::RangeInformation(const RangeProblem& problem, const std::vecto
       }
     }
   };
-  for (const Index v : unknown_nodes_) add_block(row(v), row(v), Eigen::MatrixXd::Zero(d, d));
+  for (const Index v : unknown_nodes_) add_block(row(v), row(v), Block::Zero(d, d));
   for (std::size_t k = 0; k < problem.ranges.size(); ++k) {
     const auto& range = problem.ranges[k];
-    if (!use[k] || !placement.placed[range.from] || !placement.placed[range.to]) continue;
-    const Eigen::VectorXd u = direction(range.from, range.to);
-    const Eigen::MatrixXd block = information(k) * u * u.transpose();
+    if (!use[k] || !between_placed(k)) continue;
+    const Point u = direction(range.from, range.to);
+    const Block block = information(k) * u * u.transpose();
     const Index a = row(range.from);
     const Index b = row(range.to);
     add_block(a, a, block);
@@ -52,15 +52,25 @@ RangeInformation::RangeInformation(const RangeProblem& problem, const std::vecto
   matrix_.setFromTriplets(entries.begin(), entries.end());
 }
 
+bool RangeInformation::between_placed(std::size_t k) const {
+  return placement_.placed[problem_.ranges[k].from] && placement_.placed[problem_.ranges[k].to];
+}
+
+double RangeInformation::residual(std::size_t k) const {
+  const auto& range = problem_.ranges[k];
+  return range.distance -
+         (placement_.positions.col(range.from) - placement_.positions.col(range.to)).norm();
+}
+
 double RangeInformation::information(std::size_t k) const {
   return unit_weights_ ? 1.0 : 1.0 / (problem_.sigmas[k] * problem_.sigmas[k]);
 }
 
-Eigen::VectorXd RangeInformation::direction(Index from, Index to) const {
-  const Eigen::VectorXd arm = placement_.positions.col(from) - placement_.positions.col(to);
+Point RangeInformation::direction(Index from, Index to) const {
+  const Point arm = placement_.positions.col(from) - placement_.positions.col(to);
   const double length = arm.norm();
   if (length > 0.0) return arm / length;
-  return Eigen::VectorXd::Unit(problem_.dimension, 0);
+  return Point::Unit(problem_.dimension, 0);
 }
 
 // A node and d others that all have used ranges to each other, the node with the most
@@ -185,39 +195,43 @@ std::vector<Eigen::MatrixXd> RangeInformation::diagonal_blocks(
   return blocks;
 }
 
-std::vector<RangeCheck> RangeInformation::check_ranges() const {
-  constexpr double kUnchecked = 1e-6;  // redundancy below which nothing is known
-  const int d = problem_.dimension;
+std::vector<double> RangeInformation::predicted_variances() const {
+  // Beyond so many variances a range is hopeless, however well its ends are known.
+  constexpr double kHopeless = 100.0;
   const auto matrix = regularised(kRegularisation);
   const auto blocks = diagonal_blocks(matrix);
-  std::vector<RangeCheck> checks(problem_.ranges.size());
-
-  // Variance of the predicted distance: exact where one end is known, else by the
-  // cross covariance. For unused ranges whose residual is hopeless whatever the
-  // covariance, the bound (s_a + s_b)^2 will do, and keeps far pairs out of the
-  // pattern of the factorisation.
-  const auto own_variance = [&](Index node, const Eigen::VectorXd& u) {
+  const auto own_variance = [&](Index node, const Point& u) {
     return row(node) < 0 ? 0.0 : u.dot(blocks[node] * u);
   };
-  constexpr double kHopeless = 100.0;
-  std::vector<std::size_t> exact;
   std::vector<double> variances(problem_.ranges.size(), 0.0);
+  std::vector<std::size_t> exact;
   for (std::size_t k = 0; k < problem_.ranges.size(); ++k) {
+    if (!between_placed(k)) continue;
     const auto& range = problem_.ranges[k];
-    if (!placement_.placed[range.from] || !placement_.placed[range.to]) continue;
-    checks[k].checked = true;
-    const Eigen::VectorXd u = direction(range.from, range.to);
+    const Point u = direction(range.from, range.to);
     const double a = own_variance(range.from, u);
     const double b = own_variance(range.to, u);
-    const double bound = std::pow(std::sqrt(a) + std::sqrt(b), 2);
-    variances[k] = bound;
+    // Exact where one end is known. Else a bound, which keeps hopeless ranges between
+    // far nodes out of the pattern of the factorisation.
+    variances[k] = std::pow(std::sqrt(a) + std::sqrt(b), 2);
     if (row(range.from) < 0 || row(range.to) < 0) continue;
-    const double length =
-        (placement_.positions.col(range.from) - placement_.positions.col(range.to)).norm();
-    const double residual = range.distance - length;
-    const double sigma = problem_.sigmas[k];
-    if (use_[k] || residual * residual <= kHopeless * (bound + sigma * sigma)) exact.push_back(k);
+    const double own = 1.0 / information(k);
+    const bool hopeless =
+        unit_weights_ || std::pow(residual(k), 2) > kHopeless * (variances[k] + own);
+    if (use_[k] || !hopeless) {
+      exact.push_back(k);
+      variances[k] = a + b;
+    }
   }
+  subtract_cross_terms(matrix, exact, variances);
+  return variances;
+}
+
+// Takes twice u' C_ab u off the variances of the ranges in `exact`.
+void RangeInformation::subtract_cross_terms(const spectral::SparseMatrix& matrix,
+                                            const std::vector<std::size_t>& exact,
+                                            std::vector<double>& variances) const {
+  const int d = problem_.dimension;
   std::vector<spectral::VertexPair> wanted;
   for (const auto k : exact) {
     const auto& range = problem_.ranges[k];
@@ -229,33 +243,30 @@ std::vector<RangeCheck> RangeInformation::check_ranges() const {
   std::size_t next = 0;
   for (const auto k : exact) {
     const auto& range = problem_.ranges[k];
-    const Eigen::VectorXd u = direction(range.from, range.to);
+    const Point u = direction(range.from, range.to);
     double cross = 0.0;
     for (int i = 0; i < d; ++i) {
       for (int j = 0; j < d; ++j) cross += u[i] * u[j] * values[next++];
     }
-    variances[k] =
-        std::max(0.0, own_variance(range.from, u) + own_variance(range.to, u) - 2.0 * cross);
+    variances[k] = std::max(0.0, variances[k] - 2.0 * cross);
   }
+}
 
+std::vector<RangeCheck> RangeInformation::check_ranges() const {
+  const auto variances = predicted_variances();
+  std::vector<RangeCheck> checks(problem_.ranges.size());
   for (std::size_t k = 0; k < checks.size(); ++k) {
     auto& check = checks[k];
+    check.checked = between_placed(k);
     if (!check.checked) continue;
-    const auto& range = problem_.ranges[k];
-    const double length =
-        (placement_.positions.col(range.from) - placement_.positions.col(range.to)).norm();
-    const double residual = range.distance - length;
     const double own = 1.0 / information(k);
-    if (use_[k]) {
-      // residual / (1 - h) has the variance own / (1 - h), h being variance / own.
-      check.redundancy = std::clamp(1.0 - variances[k] / own, 0.0, 1.0);
-      if (check.redundancy <= kUnchecked) continue;
-      check.deviation = residual / std::sqrt(own * check.redundancy);
-    } else {
-      check.redundancy = own / (own + variances[k]);
-      if (check.redundancy <= kUnchecked) continue;
-      check.deviation = residual / std::sqrt(own + variances[k]);
-    }
+    // The residual of a used range has the variance own - variance, and its
+    // leave-one-out residual is larger by own / (own - variance).
+    check.redundancy =
+        use_[k] ? std::clamp(1.0 - variances[k] / own, 0.0, 1.0) : own / (own + variances[k]);
+    if (!check.is_tested()) continue;
+    const double spread = use_[k] ? own * check.redundancy : own + variances[k];
+    check.deviation = residual(k) / std::sqrt(spread);
     check.chi2 = check.deviation * check.deviation;
   }
   return checks;

@@ -6,12 +6,13 @@
 
 #include "isotherm/spectral/inverse_entries.hpp"
 #include "localize/range_problem.hpp"
+#include "localize/small_network.hpp"
 
 namespace isotherm::geometry::detail {
 
 /// What the other ranges say about one range.
 struct RangeCheck {
-  bool checked = false;  ///< both ends are placed, one of them at least is no anchor
+  bool checked = false;  ///< both ends are placed
   double chi2 = 0.0;     ///< squared leave-one-out residual by its variance
   /// Leave-one-out residual by its standard deviation, measured less predicted: a
   /// biased range is positive.
@@ -19,6 +20,9 @@ struct RangeCheck {
   /// Part of the range's own information that the others also give, in [0, 1]: 0
   /// for a range that nothing can check.
   double redundancy = 0.0;
+
+  /// Whether anything but the range itself speaks about its length.
+  bool is_tested() const { return checked && redundancy > 1e-6; }
 };
 
 /// The information matrix of the placed nodes that are no anchors, given the ranges
@@ -28,13 +32,14 @@ struct RangeCheck {
 /// rigid motions are penalised; what does not depend on the frame is unaffected.
 class RangeInformation {
  public:
-  /// `unit_weights` counts every range alike, whatever its standard deviation.
+  /// `unit_weights` counts every range alike, whatever its standard deviation; only
+  /// redundancies of used ranges mean something then.
   RangeInformation(const RangeProblem& problem, const std::vector<bool>& use,
                    const Placement& placement, bool unit_weights = false);
 
   Index unknowns() const { return static_cast<Index>(matrix_.rows()); }
 
-  /// Leave-one-out tests of all ranges. A few selected inversions. @throws NumericalError
+  /// Leave-one-out tests of all ranges. Two selected inversions. @throws NumericalError
   std::vector<RangeCheck> check_ranges() const;
 
   /// d x d a node, empty where not placed or an anchor. Without anchors those of the
@@ -47,12 +52,18 @@ class RangeInformation {
 
  private:
   Index row(Index node) const { return first_row_[node]; }
-  Eigen::VectorXd direction(Index from, Index to) const;
+  Point direction(Index from, Index to) const;
   void hold_frame(std::vector<Eigen::Triplet<double, Index>>& entries) const;
   std::vector<Index> frame_nodes() const;
   Eigen::MatrixXd rigid_motions(const std::vector<Index>& nodes) const;
   spectral::SparseMatrix regularised(double relative) const;
   std::vector<Eigen::MatrixXd> diagonal_blocks(const spectral::SparseMatrix& matrix) const;
+  std::vector<double> predicted_variances() const;
+  void subtract_cross_terms(const spectral::SparseMatrix& matrix,
+                            const std::vector<std::size_t>& exact,
+                            std::vector<double>& variances) const;
+  bool between_placed(std::size_t k) const;
+  double residual(std::size_t k) const;  // measured less predicted
   double information(std::size_t k) const;
 
   const RangeProblem& problem_;

@@ -7,6 +7,7 @@
 
 #include "isotherm/base/error.hpp"
 #include "localize/damped_step.hpp"
+#include "localize/small_network.hpp"
 
 namespace isotherm::geometry::detail {
 namespace {
@@ -71,7 +72,7 @@ class SparseSystem {
 
  private:
   struct Term {
-    Eigen::VectorXd slope;  // of the residual in the first end; minus that in the second
+    Point slope;  // of the residual in the first end; minus that in the second
     double residual = 0.0;
   };
 
@@ -88,20 +89,18 @@ class SparseSystem {
   Term term(std::size_t k) const {
     const auto& range = problem_.ranges[k];
     const double sigma = problem_.sigmas[k];
-    const Eigen::VectorXd arm =
-        placement_.positions.col(range.from) - placement_.positions.col(range.to);
+    const Point arm = placement_.positions.col(range.from) - placement_.positions.col(range.to);
     const double length = arm.norm();
     // Where both ends coincide the distance has no derivative; any direction serves.
-    const Eigen::VectorXd direction =
-        length > 0.0 ? Eigen::VectorXd(arm / length)
-                     : Eigen::VectorXd(Eigen::VectorXd::Unit(problem_.dimension, 0));
+    const Point direction =
+        length > 0.0 ? Point(arm / length) : Point(Point::Unit(problem_.dimension, 0));
     return {direction / sigma, (length - range.distance) / sigma};
   }
 
   void add_range(std::size_t k) {
     const auto [slope, residual] = term(k);
     const double weight = kernel_.weight(residual * residual);
-    const Eigen::MatrixXd block = weight * slope * slope.transpose();
+    const Block block = weight * slope * slope.transpose();
     const int d = problem_.dimension;
     const Index ends[] = {first_row_[problem_.ranges[k].from], first_row_[problem_.ranges[k].to]};
     for (int a = 0; a < 2; ++a) {
@@ -113,7 +112,7 @@ class SparseSystem {
     }
   }
 
-  void add_block(Index row, Index column, double sign, const Eigen::MatrixXd& block) {
+  void add_block(Index row, Index column, double sign, const Block& block) {
     for (int i = 0; i < problem_.dimension; ++i) {
       for (int j = 0; j < problem_.dimension; ++j) {
         if (row + i >= column + j) entries_.emplace_back(row + i, column + j, sign * block(i, j));
@@ -141,8 +140,8 @@ class SparseSystem {
 
 RefineOutcome refine(const RangeProblem& problem, const std::vector<bool>& use,
                      Placement& placement, const RefineOptions& options) {
-  constexpr double kStillCost = 1e-10;  // relative decrease
-  constexpr double kStillStep = 1e-6;   // of the typical standard deviation
+  constexpr double kStillCost = 1e-8;  // relative decrease
+  constexpr double kStillStep = 1e-6;  // of the typical standard deviation
   const double still_step = kStillStep * lower_median(problem.sigmas);
   SparseSystem system(problem, use, placement, options.width);
   if (system.unknowns() == 0) return {};
@@ -154,8 +153,7 @@ RefineOutcome refine(const RangeProblem& problem, const std::vector<bool>& use,
     if (options.progress && !options.progress(progress)) throw Cancelled();
     const double before = cost;
     const bool moved = damped_step(system, damping, cost);
-    if (!moved || before - cost <= kStillCost * before ||
-        system.largest_step() <= still_step) {
+    if (!moved || before - cost <= kStillCost * before || system.largest_step() <= still_step) {
       return {k + 1, true};
     }
   }

@@ -68,7 +68,7 @@ std::vector<bool> ranges_within(const RangeProblem& problem, const Placement& pl
 RefineOutcome refine_robustly(const RangeProblem& problem, Placement& placement, double gate,
                               const LocalizeOptions& options) {
   constexpr int kStageIterations = 12;
-  constexpr int kMostRounds = 6;
+  constexpr int kMostRounds = 5;
   constexpr double kMedianOfNormal = 0.6745;
   const double narrow = std::sqrt(gate);
   Stages stages(problem, placement, options);
@@ -76,10 +76,10 @@ RefineOutcome refine_robustly(const RangeProblem& problem, Placement& placement,
   for (double width = spread(); width > narrow; width = std::min(0.5 * width, spread())) {
     stages.fit(width, kStageIterations);
   }
-  stages.fit(narrow, options.max_iterations);
+  stages.fit(narrow, kStageIterations);
   for (int round = 0; round < kMostRounds; ++round) {
-    if (relocate(problem, gate, placement) == 0) break;
-    stages.fit(narrow, options.max_iterations);
+    if (relocate(problem, gate, options, placement) == 0) break;
+    stages.fit(narrow, kStageIterations);
   }
   return stages.total();
 }

@@ -80,14 +80,13 @@ class DenseSystem {
 
   void add_range(const SmallRange& range) {
     const auto d = network_.positions.rows();
-    const Eigen::VectorXd arm =
-        network_.positions.col(range.from) - network_.positions.col(range.to);
+    const Point arm = network_.positions.col(range.from) - network_.positions.col(range.to);
     const double length = arm.norm();
     if (length == 0.0) return;
-    const Eigen::VectorXd slope = arm / (length * range.sigma);
+    const Point slope = arm / (length * range.sigma);
     const double residual = (length - range.distance) / range.sigma;
     const double weight = kernel_.weight(residual * residual);
-    const Eigen::MatrixXd block = weight * slope * slope.transpose();
+    const Block block = weight * slope * slope.transpose();
     const Eigen::Index ends[] = {d * (range.from - network_.fixed),
                                  d * (range.to - network_.fixed)};
     for (int a = 0; a < 2; ++a) {

@@ -6,6 +6,11 @@
 
 namespace isotherm::geometry::detail {
 
+/// A point or direction in the plane or in space, and a d x d block: no memory of
+/// their own to fetch.
+using Point = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1>;
+using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
+
 /// A range within a small network.
 struct SmallRange {
   int from = 0;

@@ -50,9 +50,10 @@ struct LocalizeOptions {
   /// Probability with which a correct range may be called false; in (0, 1). The gate
   /// of the leave-one-out chi-squared test is the quantile of the rest.
   double significance = 1e-3;
-  /// Chi-squared by which the second-best place of a node must be worse than the
-  /// best one for the node to count as localised; finite, >= 0.
-  double mirror_gate = 6.0;
+  /// A node counts as localised if its second-best place is less likely than its best
+  /// one by this factor; in (0, 1). The share of false ranges plays a part: the more
+  /// there are, the less does a single range prove.
+  double mirror_chance = 1e-3;
   /// Leave out, at the start, ranges that the heat kernel finds suspicious. They are
   /// judged again once there are positions.
   bool heat_pruning = true;
@@ -62,8 +63,8 @@ struct LocalizeOptions {
   /// Scale the standard deviations of the ranges by a common factor found from their
   /// residuals. Ranges without one always get theirs this way.
   bool estimate_noise = true;
-  /// Most members of a patch, the central node included; >= 5. Its closest
-  /// neighbours are taken.
+  /// Most members of a local map, >= 5. Larger maps are harder to fold and cost its
+  /// cube.
   int patch_size = 32;
   int max_iterations = 100;  ///< of a refinement, >= 1
   int threads = 0;           ///< 0: all cores; results do not depend on it
@@ -78,8 +79,9 @@ requires std::same_as<std::remove_const_t<Options>, LocalizeOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("method", options.method, "leave false ranges out, or fit them all");
   visit("significance", options.significance, "probability of calling a correct range false");
-  visit("mirror_gate", options.mirror_gate, "chi-squared by which a mirror image must be worse");
-  visit("heat_pruning", options.heat_pruning, "let the heat kernel choose the ranges to start from");
+  visit("mirror_chance", options.mirror_chance, "likelihood of a node's second-best place");
+  visit("heat_pruning", options.heat_pruning,
+        "let the heat kernel choose the ranges to start from");
   visit("heat_chance", options.heat_chance, "start without ranges less likely true than this");
   visit("estimate_noise", options.estimate_noise, "scale standard deviations by the residuals");
   visit("patch_size", options.patch_size, "most nodes of a local map");
