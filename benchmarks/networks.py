@@ -376,9 +376,9 @@ Written by `benchmarks/networks.py`:
     scripts/build.sh release
     $(scripts/python-env.sh) benchmarks/networks.py
 
-on shared cores: seconds are wall-clock and say little. RMSD counts the nodes that
-a method places, anchors left out, in sides of the unit square. Cells without a figure
-were not measured.
+with the options `{options}`, on shared cores: seconds are wall-clock and say
+little. RMSD counts the nodes that a method places, anchors left out, in sides of the
+unit square. Sizes, rows and cells that are missing were not measured.
 
 ## Simulated networks
 
@@ -419,7 +419,8 @@ def main():
             cell = (nodes, degree, noise, kind, share, seed)
             store.get(key_of(*cell), lambda: measure(*cell))
     sections = [simulated_section(store, nodes) for nodes in (100, 1000, 10000)]
-    PAGE.write_text(INTRODUCTION + "\n".join(filter(None, sections)) + "\n" + REAL
+    options = f"--budget {arguments.budget:g}" + (" --quick" if arguments.quick else "")
+    PAGE.write_text(INTRODUCTION.replace("{options}", options) + "\n".join(filter(None, sections)) + "\n" + REAL
                     + real_section(store) + "\n")
 
 
