@@ -5,8 +5,6 @@
 #include <memory>
 #include <numeric>
 
-#include <oneapi/tbb/task_arena.h>
-#include <oneapi/tbb/task_group.h>
 #include <Eigen/Dense>
 
 #include "dense_kernels.hpp"
@@ -17,8 +15,6 @@ namespace {
 
 using Eigen::MatrixXd;
 
-// Subtrees that cost less than this many multiplications are not worth a task.
-constexpr double kTaskCost = 1e6;
 // Pairs whose products with a front are formed together.
 constexpr std::ptrdiff_t kBatch = 128;
 
@@ -119,14 +115,8 @@ class PairInversion {
     find_wanted_fronts();
   }
 
-  std::vector<PairCovariance<Dof>> run(int threads) {
-    namespace tbb = oneapi::tbb;
-    tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
-    arena.execute([this] {
-      tbb::task_group tasks;
-      for (const Index root : roots_) descend(root, nullptr, tasks);
-      tasks.wait();
-    });
+  std::vector<PairCovariance<Dof>> run() {
+    for (const Index root : roots_) descend(root, nullptr);
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
       const auto [a, b] = pairs_[k];
       if (a >= 0) answers_[k].first = diagonal_[a];
@@ -186,19 +176,13 @@ class PairInversion {
 
   // Follows the heaviest branch and leaves the others to calls of its own, which
   // therefore nest no deeper than the logarithm of the number of fronts.
-  void descend(Index front, Front parent, oneapi::tbb::task_group& tasks) {
+  void descend(Index front, Front parent) {
     while (true) {
       const Front Z = std::make_shared<const MatrixXd>(invert(front, parent.get()));
       answer(front, *Z);
       const auto& children = children_[front];
       if (children.empty()) return;
-      for (auto child = children.begin() + 1; child != children.end(); ++child) {
-        if (cost_[*child] < kTaskCost) {
-          descend(*child, Z, tasks);
-        } else {
-          tasks.run([this, next = *child, Z, &tasks] { descend(next, Z, tasks); });
-        }
-      }
+      for (auto child = children.begin() + 1; child != children.end(); ++child) descend(*child, Z);
       parent = Z;
       front = children.front();
     }
@@ -286,17 +270,14 @@ class PairInversion {
 
 template <int Dof>
 std::vector<PairCovariance<Dof>> pair_covariances(const BlockCholesky& factor,
-                                                  std::span<const std::pair<Index, Index>> pairs,
-                                                  int threads) {
+                                                  std::span<const std::pair<Index, Index>> pairs) {
   if (pairs.empty()) return {};
-  return PairInversion<Dof>(factor, pairs).run(threads);
+  return PairInversion<Dof>(factor, pairs).run();
 }
 
 template std::vector<PairCovariance<3>> pair_covariances(const BlockCholesky&,
-                                                         std::span<const std::pair<Index, Index>>,
-                                                         int);
+                                                         std::span<const std::pair<Index, Index>>);
 template std::vector<PairCovariance<6>> pair_covariances(const BlockCholesky&,
-                                                         std::span<const std::pair<Index, Index>>,
-                                                         int);
+                                                         std::span<const std::pair<Index, Index>>);
 
 }  // namespace isotherm::slam

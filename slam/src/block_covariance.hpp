@@ -30,11 +30,10 @@ struct PairCovariance {
 /// that front's rows, Z_ab = w_a' Z w_b. Only branches that lead to a pair are visited.
 /// All pairs of neighbours together cost about two factorisations; a pair whose
 /// branches meet near the root costs a triangular solve along them.
-/// The answers do not depend on `threads` (0: all cores).
+/// Runs on one thread: dense kernels of a serial BLAS may not be called from several.
 /// @throws InvalidArgument if the factor is not supernodal
 template <int Dof>
 std::vector<PairCovariance<Dof>> pair_covariances(const BlockCholesky& factor,
-                                                  std::span<const std::pair<Index, Index>> pairs,
-                                                  int threads);
+                                                  std::span<const std::pair<Index, Index>> pairs);
 
 }  // namespace isotherm::slam

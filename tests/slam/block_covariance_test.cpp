@@ -57,8 +57,8 @@ Pairs all_pairs(Index count) {
 }
 
 template <int Dof>
-void expect_all_right(const System<Dof>& system, const Pairs& pairs, int threads) {
-  const auto answers = pair_covariances<Dof>(system.blocks, pairs, threads);
+void expect_all_right(const System<Dof>& system, const Pairs& pairs) {
+  const auto answers = pair_covariances<Dof>(system.blocks, pairs);
   ASSERT_EQ(answers.size(), pairs.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const auto [a, b] = pairs[k];
@@ -83,8 +83,8 @@ TYPED_TEST(PairCovarianceOf, AreBlocksOfTheDenseInverse) {
     for (const int chords : {0, 8, 60}) {
       const auto pairs = ring_with_chords(random, count, chords);
       const auto system = random_system<kDof>(random, count, pairs);
-      expect_all_right<kDof>(system, all_pairs(count), 1);
-      expect_all_right<kDof>(system, {{0, count - 1}, {1, 1}}, 2);
+      expect_all_right<kDof>(system, all_pairs(count));
+      expect_all_right<kDof>(system, {{0, count - 1}, {1, 1}});
     }
   }
 }
@@ -93,7 +93,7 @@ TYPED_TEST(PairCovarianceOf, BetweenSeparatePartsAreZero) {
   constexpr int kDof = TypeParam::value;
   Random random(4);
   const auto system = random_system<kDof>(random, 7, {{0, 1}, {1, 2}, {3, 4}, {4, 5}});
-  expect_all_right<kDof>(system, all_pairs(7), 1);
+  expect_all_right<kDof>(system, all_pairs(7));
 }
 
 TYPED_TEST(PairCovarianceOf, RowsThatAreNotThereAreZero) {
@@ -101,7 +101,7 @@ TYPED_TEST(PairCovarianceOf, RowsThatAreNotThereAreZero) {
   Random random(5);
   const auto system = random_system<kDof>(random, 4, {{0, 1}, {1, 2}, {2, 3}});
   const Pairs pairs = {{-1, 2}, {1, -1}, {-1, -1}};
-  const auto answers = pair_covariances<kDof>(system.blocks, pairs, 1);
+  const auto answers = pair_covariances<kDof>(system.blocks, pairs);
   EXPECT_EQ(answers[0].first.norm(), 0.0);
   EXPECT_LT(
       (answers[0].second - system.inverse.template block<kDof, kDof>(2 * kDof, 2 * kDof)).norm(),
@@ -111,29 +111,17 @@ TYPED_TEST(PairCovarianceOf, RowsThatAreNotThereAreZero) {
   EXPECT_EQ(answers[2].second.norm(), 0.0);
 }
 
-TYPED_TEST(PairCovarianceOf, DoNotDependOnTheNumberOfThreads) {
-  constexpr int kDof = TypeParam::value;
-  Random random(6);
-  const Index count = 600;
-  const auto system = random_system<kDof>(random, count, ring_with_chords(random, count, 150));
-  Pairs pairs;
-  for (Index a = 0; a < count; ++a) pairs.emplace_back(a, (7 * a + 3) % count);
-  const auto one = pair_covariances<kDof>(system.blocks, pairs, 1);
-  const auto two = pair_covariances<kDof>(system.blocks, pairs, 2);
-  for (std::size_t k = 0; k < pairs.size(); ++k) EXPECT_EQ(one[k].cross, two[k].cross);
-}
-
 TEST(PairCovariance, NeedsASupernodalFactor) {
   const Pairs pairs = {{0, 1}};
   BlockCholesky blocks(3, 2, pairs);
   blocks.add_diagonal(0, Eigen::Matrix3d::Identity().eval());
   blocks.add_diagonal(1, Eigen::Matrix3d::Identity().eval());
   ASSERT_TRUE(blocks.factorise());
-  EXPECT_THROW(pair_covariances<3>(blocks, pairs, 1), InvalidArgument);
-  EXPECT_TRUE(pair_covariances<3>(blocks, {}, 1).empty());
+  EXPECT_THROW(pair_covariances<3>(blocks, pairs), InvalidArgument);
+  EXPECT_TRUE(pair_covariances<3>(blocks, {}).empty());
 
   const BlockCholesky without_factor(3, 2, pairs, FactorForm::supernodal);
-  EXPECT_THROW(pair_covariances<3>(without_factor, pairs, 1), NumericalError);
+  EXPECT_THROW(pair_covariances<3>(without_factor, pairs), NumericalError);
 }
 
 TEST(ChainElimination, TakesAChainApartInFewRounds) {

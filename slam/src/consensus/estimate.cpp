@@ -64,7 +64,7 @@ bool Estimate<Pose>::connected(const Link<Pose>& loop) const {
 // d(T_a^-1 T_b) = -Ad d_a + d_b, with Ad the adjoint of T_b_a.
 template <class Pose>
 std::vector<typename Pose::Matrix> Estimate<Pose>::relative_covariances(
-    std::span<const Index> loops, int threads) const {
+    std::span<const Index> loops) const {
   std::vector<std::pair<Index, Index>> pairs;
   pairs.reserve(loops.size());
   for (const Index k : loops) {
@@ -72,7 +72,7 @@ std::vector<typename Pose::Matrix> Estimate<Pose>::relative_covariances(
     const bool turns_back = loop.a == loop.b;
     pairs.emplace_back(turns_back ? -1 : variable_[loop.a], turns_back ? -1 : variable_[loop.b]);
   }
-  const auto known = pair_covariances<Pose::kDof>(*factor_, pairs, threads);
+  const auto known = pair_covariances<Pose::kDof>(*factor_, pairs);
   std::vector<Matrix> covariances;
   covariances.reserve(loops.size());
   for (std::size_t k = 0; k < loops.size(); ++k) {

@@ -43,7 +43,7 @@ class Estimate {
 
   /// Covariances of T_a^-1 T_b, one each of `loops`, as perturbations on the right, from
   /// the factor of the last update. The ends of each must be connected.
-  std::vector<Matrix> relative_covariances(std::span<const Index> loops, int threads) const;
+  std::vector<Matrix> relative_covariances(std::span<const Index> loops) const;
 
   /// r' Omega r summed over odometry, in units of the file's covariances.
   double odometry_cost() const;

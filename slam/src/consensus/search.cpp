@@ -134,7 +134,7 @@ bool Search<Pose>::drop_inconsistent() {
     if (accepted_[k] && !judge(loop)) doubtful.push_back(loop);
   }
   // An old covariance is an upper bound, and so is the chi-squared it gives.
-  const auto covariances = estimate_.relative_covariances(doubtful, options_.threads);
+  const auto covariances = estimate_.relative_covariances(doubtful);
   double worst = 0.0;
   for (std::size_t k = 0; k < doubtful.size(); ++k) {
     states_[doubtful[k]].covariance = covariances[k];
@@ -195,7 +195,7 @@ void Search<Pose>::assess() {
 template <class Pose>
 void Search<Pose>::weigh_afresh(const Selection& loops) {
   tell_progress();
-  const auto covariances = estimate_.relative_covariances(loops, options_.threads);
+  const auto covariances = estimate_.relative_covariances(loops);
   for (std::size_t k = 0; k < loops.size(); ++k) {
     states_[loops[k]].covariance = covariances[k];
     states_[loops[k]].evidence = weigh_loop(loops[k], covariances[k]);
@@ -298,7 +298,7 @@ bool Search<Pose>::calibrate() {
   std::vector<double> probability = log_odds();
   for (double& p : probability) p = 1.0 / (1.0 + std::exp(-p));
   const CovarianceScale next =
-      variance_components(graph_, estimate_, accepted_, probability, scale_, options_.threads);
+      variance_components(graph_, estimate_, accepted_, probability, scale_);
   const double loop_change = std::abs(std::log(next.loops / scale_.loops));
   const double odometry_change = std::abs(std::log(next.odometry / scale_.odometry));
   if (std::max(loop_change, odometry_change) < std::log(kWorthRescaling)) return false;

@@ -19,12 +19,12 @@ template <class Pose>
 CovarianceScale variance_components(const ReducedGraph<Pose>& graph, const Estimate<Pose>& estimate,
                                     const std::vector<bool>& accepted,
                                     const std::vector<double>& probability,
-                                    const CovarianceScale& scale, int threads) {
+                                    const CovarianceScale& scale) {
   std::vector<Index> loops;
   for (std::size_t k = 0; k < accepted.size(); ++k) {
     if (accepted[k] && graph.loops[k].a != graph.loops[k].b) loops.push_back(static_cast<Index>(k));
   }
-  const auto covariances = estimate.relative_covariances(loops, threads);
+  const auto covariances = estimate.relative_covariances(loops);
   double loop_cost = 0.0;
   double loop_redundancy = 0.0;
   double weighted_redundancy = 0.0;
@@ -48,9 +48,9 @@ CovarianceScale variance_components(const ReducedGraph<Pose>& graph, const Estim
 
 template CovarianceScale variance_components(const ReducedGraph<Pose2>&, const Estimate<Pose2>&,
                                              const std::vector<bool>&, const std::vector<double>&,
-                                             const CovarianceScale&, int);
+                                             const CovarianceScale&);
 template CovarianceScale variance_components(const ReducedGraph<Pose3>&, const Estimate<Pose3>&,
                                              const std::vector<bool>&, const std::vector<double>&,
-                                             const CovarianceScale&, int);
+                                             const CovarianceScale&);
 
 }  // namespace isotherm::slam::detail

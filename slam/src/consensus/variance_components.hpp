@@ -19,6 +19,6 @@ template <class Pose>
 CovarianceScale variance_components(const ReducedGraph<Pose>& graph, const Estimate<Pose>& estimate,
                                     const std::vector<bool>& accepted,
                                     const std::vector<double>& probability,
-                                    const CovarianceScale& scale, int threads);
+                                    const CovarianceScale& scale);
 
 }  // namespace isotherm::slam::detail

@@ -25,7 +25,8 @@ struct ConsensusOptions {
   /// they are never taken as smaller than the file says.
   bool calibrate = true;
   int max_rounds = 200;  ///< batches accepted at most, > 0
-  int threads = 0;       ///< 0: all cores; results do not depend on it
+  /// As for other methods, >= 0; the search itself runs on one thread.
+  int threads = 0;
   ProgressCallback progress = {};
 
   /// @throws InvalidArgument naming the field that is out of range.
