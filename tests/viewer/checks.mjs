@@ -131,7 +131,12 @@ export async function checkLayers(page) {
 
 /** Everything can be reached and used without a pointer. */
 export async function checkKeyboard(page) {
-  await page.evaluate(() => document.activeElement?.blur());
+  // The Tab key goes on from where the last click was: from the top of the page.
+  await page.evaluate(() => {
+    document.activeElement?.blur();
+    window.scrollTo(0, 0);
+  });
+  await page.mouse.click(2, 2);
   const reached = new Set();
   for (let k = 0; k < 80 && !reached.has('rows'); ++k) {
     await page.keyboard.press('Tab');
@@ -157,9 +162,14 @@ export async function checkKeyboard(page) {
 
 /** Presses a key, and waits until the map looks otherwise; a busy machine takes its time. */
 async function checkKeyChangesMap(page, key) {
+  const stage = await page.evaluateHandle(() => document.activeElement);
+  // Read in the page: a screenshot resizes the view for a moment, which moves the map too.
   const picture = async () => {
     await settle(page);
-    return (await page.$('.stage')).screenshot({ encoding: 'base64' });
+    return stage.evaluate((element) => {
+      const canvas = element.querySelector('canvas');
+      return canvas ? canvas.toDataURL() : element.innerHTML;
+    });
   };
   const before = await picture();
   await page.keyboard.press(key);
