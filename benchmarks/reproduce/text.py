@@ -137,7 +137,8 @@ def page_text(page, extent, quick):
     parts = [HEAD.format(flags=" --quick" if quick else "",
                          extent=f"{seeds} seed{'s' if seeds > 1 else ''}, noise levels "
                                 f"{', '.join(f'{10 * level} %' for level in extent.levels)}, "
-                                f"kernel widths {', '.join(map(str, extent.widths))}")]
+                                f"kernel widths {', '.join(map(str, extent.widths))}; "
+                                f"of DCS after pruning {', '.join(map(str, extent.finishing_widths))}")]
     parts += [findings(page, extent), FIRST_POSE]
     for style in extent.styles:
         name = STYLE_NAMES[style]
