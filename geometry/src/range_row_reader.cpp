@@ -53,7 +53,8 @@ void read_beacon(Rows& rows) {
   RangeMeasurement measurement;
   measurement.timestamp = text.number("a time stamp");
   whole_field(text, "the id of the tag");
-  const std::string beacon = "L" + whole_field(text, "the id of the beacon");
+  std::string beacon("L");
+  beacon += whole_field(text, "the id of the beacon");
   measurement.distance = distance_field(text);
   text.expect_line_end();
   measurement.from = rows.builder.node(std::to_string(rows.builder.range_count()));
