@@ -2,16 +2,10 @@
 
 #include <numeric>
 
+#include "find_root.hpp"
+
 namespace isotherm::slam {
 namespace {
-
-Index find_root(std::vector<Index>& parent, Index vertex) {
-  while (parent[vertex] != vertex) {
-    parent[vertex] = parent[parent[vertex]];
-    vertex = parent[vertex];
-  }
-  return vertex;
-}
 
 // Joins under the smaller root, so that a root is its component's first vertex.
 void join(std::vector<Index>& parent, Index a, Index b) {

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "candidate_verdicts.hpp"
+#include "find_root.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/statistics.hpp"
 #include "isotherm/slam/information.hpp"
@@ -309,25 +310,21 @@ std::vector<std::vector<Index>> cluster_loops(const PoseGraph<Pose>& graph, cons
   });
   std::vector<Index> parent(static_cast<std::size_t>(count));
   std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](Index c) {
-    while (parent[c] != c) c = parent[c] = parent[parent[c]];
-    return c;
-  };
   for (std::size_t a = 0; a < by_low.size(); ++a) {
     for (std::size_t b = a + 1; b < by_low.size(); ++b) {
       const Ends& first = ends[by_low[a]];
       const Ends& second = ends[by_low[b]];
       if (second.low - first.low > gap) break;
       if (std::abs(second.high - first.high) > gap) continue;
-      const Index x = root(by_low[a]);
-      const Index y = root(by_low[b]);
+      const Index x = find_root(parent, by_low[a]);
+      const Index y = find_root(parent, by_low[b]);
       parent[std::max(x, y)] = std::min(x, y);
     }
   }
   std::vector<std::vector<Index>> clusters;
   std::vector<Index> cluster_of(static_cast<std::size_t>(count), -1);
   for (Index c = 0; c < count; ++c) {
-    Index& cluster = cluster_of[root(c)];
+    Index& cluster = cluster_of[find_root(parent, c)];
     if (cluster < 0) {
       cluster = static_cast<Index>(clusters.size());
       clusters.emplace_back();

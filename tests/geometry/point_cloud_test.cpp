@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "isotherm_test/parse_error.hpp"
+
 namespace isotherm::geometry {
 namespace {
 
@@ -13,12 +15,7 @@ PointCloudFile parse(const std::string& text) {
 }
 
 std::string error_of(const std::string& text) {
-  try {
-    parse(text);
-  } catch (const ParseError& error) {
-    return error.what();
-  }
-  return "no error";
+  return isotherm_test::parse_error_of([&] { parse(text); });
 }
 
 TEST(ReadPoints, WithAndWithoutNames) {

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "isotherm_test/data.hpp"
+#include "isotherm_test/parse_error.hpp"
 #include "isotherm_test/temporary.hpp"
 
 namespace isotherm::geometry {
@@ -22,12 +23,7 @@ RangeFile parse(const std::string& text) {
 }
 
 std::string error_of(const std::string& text) {
-  try {
-    parse(text);
-  } catch (const ParseError& error) {
-    return error.what();
-  }
-  return "no error";
+  return isotherm_test::parse_error_of([&] { parse(text); });
 }
 
 TEST(ReadRanges, Pyfg) {

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "isotherm_test/parse_error.hpp"
+
 #include "isotherm_test/temporary.hpp"
 
 namespace isotherm::spectral {
@@ -21,12 +23,7 @@ GraphFile parse(const std::string& text, bool strict = false) {
 }
 
 std::string error_of(const std::string& text, bool strict = false) {
-  try {
-    parse(text, strict);
-  } catch (const ParseError& error) {
-    return error.what();
-  }
-  return "no error";
+  return isotherm_test::parse_error_of([&] { parse(text, strict); });
 }
 
 TEST(ReadGraph, EdgeLists) {

@@ -4,17 +4,13 @@
 #include <cmath>
 #include <cstddef>
 
+#include "../find_root.hpp"
+
 namespace isotherm::slam::detail {
 namespace {
 
 // Groups with this share of the strongest one's log odds are accepted with it.
 constexpr double kStrong = 0.7;
-
-// Index of the set a member belongs to, halving paths on the way.
-Index find_set(std::vector<Index>& parent, Index member) {
-  while (parent[member] != member) member = parent[member] = parent[parent[member]];
-  return member;
-}
 
 }  // namespace
 
@@ -47,8 +43,8 @@ std::vector<Index> strongest_clusters(const MutualSupport& support,
   const double cap = -std::log(alike_fraction);
   for (const auto& link : support.agreeing) {
     if (parent[link.first] < 0 || parent[link.second] < 0) continue;
-    const Index a = find_set(parent, link.first);
-    const Index b = find_set(parent, link.second);
+    const Index a = find_root(parent, link.first);
+    const Index b = find_root(parent, link.second);
     if (a == b || link.gain <= 0.0) continue;
     parent[b] = a;
     best[a] = std::max(best[a], best[b]);
@@ -60,7 +56,7 @@ std::vector<Index> strongest_clusters(const MutualSupport& support,
   }
   std::vector<Index> chosen;
   for (const Index k : eligible) {
-    const Index root = find_set(parent, k);
+    const Index root = find_root(parent, k);
     const double score = best[root] + added[root];
     if (score >= required_odds && score >= kStrong * strongest) chosen.push_back(k);
   }

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "../block_covariance.hpp"
+#include "../find_root.hpp"
 #include "isotherm/base/error.hpp"
 
 namespace isotherm::slam::detail {
@@ -11,11 +12,6 @@ namespace {
 
 // Steps below this many standard deviations of the links they move do not matter.
 constexpr double kSettled = 0.1;
-
-Index root_of(std::vector<Index>& parent, Index node) {
-  while (parent[node] != node) node = parent[node] = parent[parent[node]];
-  return node;
-}
 
 }  // namespace
 
@@ -102,7 +98,7 @@ void Estimate<Pose>::join_components(const std::vector<bool>& accepted) {
   std::vector<Index> parent(poses_.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto join = [&](const Link<Pose>& link) {
-    parent[root_of(parent, link.b)] = root_of(parent, link.a);
+    parent[find_root(parent, link.b)] = find_root(parent, link.a);
     if (connected(link)) return;
     const Index stays = component_[link.a];
     const Index follows = component_[link.b];
@@ -121,7 +117,7 @@ void Estimate<Pose>::join_components(const std::vector<bool>& accepted) {
   std::vector<Index> number(poses_.size(), -1);
   component_count_ = 0;
   for (std::size_t v = 0; v < poses_.size(); ++v) {
-    Index& component = number[root_of(parent, static_cast<Index>(v))];
+    Index& component = number[find_root(parent, static_cast<Index>(v))];
     if (component < 0) component = component_count_++;
     component_[v] = component;
   }

@@ -3,6 +3,7 @@
 #include "isotherm/slam/io/file_format.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm_test/data.hpp"
+#include "isotherm_test/parse_error.hpp"
 
 namespace isotherm::slam {
 namespace {
@@ -13,12 +14,7 @@ PoseGraphFile parse(const std::string& text) {
 }
 
 std::string error_of(const std::string& text) {
-  try {
-    parse(text);
-  } catch (const ParseError& error) {
-    return error.what();
-  }
-  return "no error";
+  return isotherm_test::parse_error_of([&] { parse(text); });
 }
 
 const std::string kStart = "odom2 0 0 0 0 0.01 0.01 0.04\n";

@@ -10,6 +10,7 @@
 
 #include "isotherm/base/text_writer.hpp"
 #include "isotherm_test/data.hpp"
+#include "isotherm_test/parse_error.hpp"
 #include "isotherm_test/temporary.hpp"
 
 namespace isotherm::slam {
@@ -35,12 +36,7 @@ PoseGraph<Pose3> spatial(const std::string& text) {
 }
 
 std::string error_of(const std::string& text, bool strict = false) {
-  try {
-    parse(text, strict);
-  } catch (const ParseError& error) {
-    return error.what();
-  }
-  return "no error";
+  return isotherm_test::parse_error_of([&] { parse(text, strict); });
 }
 
 template <class Pose>

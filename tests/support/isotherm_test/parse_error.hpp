@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "isotherm/base/error.hpp"
+
+namespace isotherm_test {
+
+/// What the ParseError says that `read` throws, or "no error".
+template <class Read>
+std::string parse_error_of(const Read& read) {
+  try {
+    read();
+  } catch (const isotherm::ParseError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace isotherm_test
