@@ -1,15 +1,8 @@
 """The labelled graphs of the comparison, and what counts as truth for each."""
 
-import dataclasses
 import pathlib
 
-
-@dataclasses.dataclass(frozen=True)
-class Graph:
-    name: str
-    graph: pathlib.Path
-    labels: pathlib.Path
-    truth: tuple  # arguments of `eval ate` after the estimate
+from experiment import LabelledGraph, bicocca_truth
 
 
 class Graphs:
@@ -28,13 +21,11 @@ class Graphs:
         return labels
 
     def bicocca(self):
-        folder = self.data / "paper" / "b25b"
-        truth = (folder / "Bicocca_2009-02-25b-GT-extended.csv", "--timestamps",
-                 folder / "B25b_timestamps.txt")
+        truth = bicocca_truth(self.data)
         for alpha in ("0.100", "0.300", "0.600"):
             name = f"B25b_{alpha}"
-            graph = folder / f"{name}.g2o"
-            yield Graph(name, graph, self.labelled(name, graph, truth),
+            graph = self.data / "paper" / "b25b" / f"{name}.g2o"
+            yield LabelledGraph(name, graph, self.labelled(name, graph, truth),
                         (*truth, "--max-gap", "0.25"))
 
     def bovisa(self):
@@ -51,7 +42,7 @@ class Graphs:
         stamps.write_text("".join(f"{vertex}\n" for vertex in range(11393)), encoding="utf-8")
         truth = (positions, "--timestamps", stamps)
         labels = self.labelled("Bovisa04", graph, truth, "--max-translation-error", "5")
-        return Graph("Bovisa04", graph, labels, (*truth, "--max-gap", "0.5"))
+        return LabelledGraph("Bovisa04", graph, labels, (*truth, "--max-gap", "0.5"))
 
     def injected(self):
         planar, spatial = self.data / "posegraph2d", self.data / "posegraph3d"
@@ -62,7 +53,7 @@ class Graphs:
         }
         for graph in sorted((self.data / "outliers").glob("*.g2o.gz")):
             name = graph.name.removesuffix(".g2o.gz")
-            yield Graph(name, graph, graph.with_name(f"{name}.labels.csv"),
+            yield LabelledGraph(name, graph, graph.with_name(f"{name}.labels.csv"),
                         (truths[name.split("_")[0]],))
 
     def optimum(self, graph):

@@ -1,27 +1,16 @@
 """Runs every method on every labelled graph; see benchmarks/peers.sh."""
 
-import argparse
 import os
 import pathlib
 import sys
 
+from experiment import ROOT, argument_parser
 from graphs import Graphs
 from methods import measure, methods
 from published import read_published, shortfalls
 from runs import Command, Results, run_all
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 TIME_LIMIT = 600  # seconds a run
-
-
-def arguments():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--data", type=pathlib.Path,
-                        default=os.environ.get("ISOTHERM_DATA", ROOT / ".." / "shared" / "data"))
-    parser.add_argument("--jobs", type=int, default=2, help="programs to run at once")
-    parser.add_argument("--page-only", action="store_true",
-                        help="write the page of what is there, and measure nothing")
-    return parser.parse_args()
 
 
 def shown(value, digits):
@@ -55,7 +44,7 @@ def tables(results, graphs, published):
 
 
 def main():
-    options = arguments()
+    options = argument_parser(__doc__).parse_args()
     if not options.data.is_dir():
         sys.exit(f"peers: no folder {options.data}")
     build = ROOT / "build" / "peers"

@@ -1,23 +1,15 @@
 """Graphs with known labels and truth: one a cell of the tables."""
 
-import dataclasses
 import pathlib
 import tempfile
 import threading
 
 import kitti
 import planar
+from experiment import LabelledGraph, bicocca_truth
 
 TYPES = ("local", "local-grouped", "random", "random-grouped", "all-random")
 STYLES = ("paper", "vertigo")
-
-
-@dataclasses.dataclass(frozen=True)
-class Cell:
-    key: str
-    graph: pathlib.Path
-    labels: pathlib.Path
-    truth: tuple  # arguments of `eval ate` after the estimate
 
 
 class Graphs:
@@ -62,7 +54,7 @@ class Graphs:
                              "--type", kind, "--count", count, "--seed", seed)
 
         graph = self.made(key + ".g2o", corrupt)
-        return Cell(key, graph, labels, (self.kitti_truth(sequence),))
+        return LabelledGraph(key, graph, labels, (self.kitti_truth(sequence),))
 
     def place_cell(self, sequence, candidates, seed):
         key = f"places{sequence}-{candidates}-{seed}"
@@ -71,20 +63,15 @@ class Graphs:
         truth = self.kitti_truth(sequence)
         labels = self.made(key + ".csv", lambda path: self.command.run(
             "label", graph, "--ground-truth", truth, "-o", path))
-        return Cell(key, graph, labels, (truth,))
+        return LabelledGraph(key, graph, labels, (truth,))
 
     # Bicocca
 
-    def bicocca_truth(self):
-        folder = self.data / "paper" / "b25b"
-        return (folder / "Bicocca_2009-02-25b-GT-extended.csv", "--timestamps",
-                folder / "B25b_timestamps.txt")
-
     def bicocca(self, key, graph):
-        truth = self.bicocca_truth()
+        truth = bicocca_truth(self.data)
         labels = self.made(key + ".csv", lambda path: self.command.run(
             "label", graph, "--ground-truth", *truth, "-o", path))
-        return Cell(key, graph, labels, (*truth, "--max-gap", "0.25"))
+        return LabelledGraph(key, graph, labels, (*truth, "--max-gap", "0.25"))
 
     def bicocca_cell(self, style, kind, count, seed):
         key = f"b25b-{style}-{kind}-{count}-{seed}"

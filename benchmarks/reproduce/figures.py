@@ -11,6 +11,7 @@ import scipy.linalg
 
 import planar
 from cells import TYPES, work_folder
+from experiment import bicocca_truth
 from methods import bicocca_error
 from runs import read_csv
 
@@ -77,7 +78,7 @@ class Figures:
 
     def bicocca_truth(self):
         """Rows of (vertex, x, y) where there is ground truth."""
-        path, _, stamps = self.graphs.bicocca_truth()
+        path, _, stamps = bicocca_truth(self.graphs.data)
         rows = np.genfromtxt(path, delimiter=",", invalid_raise=False)
         rows = rows[np.isfinite(rows[:, 0])]
         times = np.loadtxt(stamps)

@@ -1,11 +1,10 @@
 """Repeats the paper's experiments; see benchmarks/reproduce.sh."""
 
-import argparse
 import os
-import pathlib
 import sys
 
 from cells import Graphs
+from experiment import ROOT, argument_parser
 from figures import Figures
 from methods import Measure
 from page import Page
@@ -13,18 +12,11 @@ from plan import FULL, QUICK, all_tasks
 from runs import Command, Results, run_all
 from text import page_text
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-
 
 def arguments():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argument_parser(__doc__)
     parser.add_argument("--quick", action="store_true",
                         help="one seed, three noise levels, six kernel widths")
-    parser.add_argument("--data", type=pathlib.Path,
-                        default=os.environ.get("ISOTHERM_DATA", ROOT / ".." / "shared" / "data"))
-    parser.add_argument("--jobs", type=int, default=2, help="programs to run at once")
-    parser.add_argument("--page-only", action="store_true",
-                        help="write the page of what is there, and measure nothing")
     return parser.parse_args()
 
 
