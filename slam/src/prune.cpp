@@ -36,7 +36,6 @@ PruneResult prune_by_consensus(const PoseGraph<Pose>& graph, const EdgeRoles& ro
                                const PruneOptions& options) {
   ConsensusOptions own = options.consensus;
   if (options.significance > 0.0) own.significance = options.significance;
-  own.threads = options.threads;
   own.progress = options.progress;
   PruneResult result;
   result.consensus = consensus(graph, roles, own);

@@ -12,7 +12,7 @@ set(spectral_private Eigen Spectra suitesparse cholmod tbb oneapi boost fast_flo
 set(geometry_layers base spectral geometry)
 set(geometry_private Eigen CGAL boost nanoflann fast_float)
 set(slam_layers base spectral geometry slam)
-set(slam_private Eigen ceres suitesparse cholmod tbb oneapi)
+set(slam_private Eigen ceres nanoflann suitesparse cholmod tbb oneapi)
 set(apps_layers base spectral geometry slam)
 set(apps_private Eigen CLI nlohmann fmt spdlog)
 

@@ -1,9 +1,11 @@
 #include "conflicts.hpp"
 
 #include <algorithm>
-#include <cstdlib>
+#include <array>
 #include <map>
 #include <utility>
+
+#include <nanoflann.hpp>
 
 namespace isotherm::slam::detail {
 namespace {
@@ -18,33 +20,42 @@ Chains chains_of(const ReducedGraph<Pose>& graph, const ForwardLoop<Pose>& loop)
   return {graph.odometry.chain(loop.from), graph.odometry.chain(loop.to)};
 }
 
-// Accepted loops of one pair of chains in the order of their first ends.
-struct ByFirstEnd {
-  std::vector<std::pair<Index, Index>> from_and_loop;
+// Accepted loops of one pair of chains as points (from, to), as nanoflann reads them.
+struct LoopEnds {
+  std::vector<std::array<Index, 2>> ends;
+  std::vector<Index> loop;
 
-  // The loops nearest to `loop`, by steps of odometry between their ends. The
-  // search goes outwards from its first end until that alone is too far.
-  template <class Pose>
-  std::vector<Index> nearest(const std::vector<ForwardLoop<Pose>>& loops, Index loop) const {
-    const auto& centre = loops[loop];
-    std::vector<std::pair<Index, Index>> found;  // distance, loop; sorted
-    const auto offer = [&](std::pair<Index, Index> entry) {
-      const Index first = std::abs(entry.first - centre.from);
-      if (found.size() == kLookedAt && first > found.back().first) return false;
-      const std::pair<Index, Index> candidate = {
-          first + std::abs(loops[entry.second].to - centre.to), entry.second};
-      found.insert(std::upper_bound(found.begin(), found.end(), candidate), candidate);
-      if (found.size() > kLookedAt) found.pop_back();
-      return true;
-    };
-    const auto middle = std::lower_bound(from_and_loop.begin(), from_and_loop.end(),
-                                         std::pair<Index, Index>{centre.from, 0});
-    for (auto at = middle; at != from_and_loop.end() && offer(*at);) ++at;
-    for (auto at = middle; at != from_and_loop.begin() && offer(*std::prev(at));) --at;
-    std::vector<Index> result;
-    for (const auto& entry : found) result.push_back(entry.second);
-    return result;
+  std::size_t kdtree_get_point_count() const { return ends.size(); }
+  double kdtree_get_pt(std::size_t index, std::size_t axis) const { return ends[index][axis]; }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
   }
+};
+
+// Loops are as far apart as the steps of odometry between their ends.
+class AcceptedLoops {
+ public:
+  explicit AcceptedLoops(LoopEnds ends) : ends_(std::move(ends)), tree_(2, ends_) {}
+  AcceptedLoops(const AcceptedLoops&) = delete;  // the tree refers to the ends
+  AcceptedLoops& operator=(const AcceptedLoops&) = delete;
+
+  std::vector<Index> nearest(Index from, Index to) const {
+    const std::array<double, 2> place = {static_cast<double>(from), static_cast<double>(to)};
+    std::array<std::size_t, kLookedAt> found{};
+    std::array<double, kLookedAt> distance{};
+    const std::size_t count =
+        tree_.knnSearch(place.data(), kLookedAt, found.data(), distance.data());
+    std::vector<Index> loops;
+    for (std::size_t k = 0; k < count; ++k) loops.push_back(ends_.loop[found[k]]);
+    return loops;
+  }
+
+ private:
+  using Distance = nanoflann::L1_Adaptor<double, LoopEnds>;
+
+  LoopEnds ends_;
+  nanoflann::KDTreeSingleIndexAdaptor<Distance, LoopEnds, 2, std::size_t> tree_;
 };
 
 }  // namespace
@@ -56,19 +67,21 @@ std::vector<std::vector<Index>> name_conflicts(const ReducedGraph<Pose>& graph,
                                                const std::vector<bool>& accepted,
                                                const std::vector<bool>& refuted) {
   const auto loops = forward_loops(graph, scale);
-  std::map<Chains, ByFirstEnd> groups;
+  std::map<Chains, LoopEnds> by_chains;
   for (std::size_t k = 0; k < loops.size(); ++k) {
     if (!accepted[k]) continue;
-    auto& group = groups[chains_of(graph, loops[k])];
-    group.from_and_loop.emplace_back(loops[k].from, static_cast<Index>(k));
+    auto& group = by_chains[chains_of(graph, loops[k])];
+    group.ends.push_back({loops[k].from, loops[k].to});
+    group.loop.push_back(static_cast<Index>(k));
   }
-  for (auto& entry : groups) std::ranges::sort(entry.second.from_and_loop);
+  std::map<Chains, AcceptedLoops> groups;
+  for (auto& [chains, ends] : by_chains) groups.try_emplace(chains, std::move(ends));
 
   std::vector<std::vector<Index>> conflicts(loops.size());
   for (std::size_t k = 0; k < loops.size(); ++k) {
     const auto group = groups.find(chains_of(graph, loops[k]));
     if (!refuted[k] || group == groups.end()) continue;
-    const auto near = group->second.nearest(loops, static_cast<Index>(k));
+    const auto near = group->second.nearest(loops[k].from, loops[k].to);
     auto& named = conflicts[k];
     std::ranges::copy_if(near, std::back_inserter(named), [&](Index other) {
       return compare(graph, scale, loops[other], loops[k], map).chi2 > gate;

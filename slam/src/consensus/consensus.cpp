@@ -12,7 +12,6 @@ void ConsensusOptions::validate() const {
   }
   if (window <= 0) throw InvalidArgument("window", "must be positive");
   if (max_rounds <= 0) throw InvalidArgument("max_rounds", "must be positive");
-  if (threads < 0) throw InvalidArgument("threads", "must not be negative");
 }
 
 template <class Pose>

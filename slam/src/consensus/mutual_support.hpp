@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "loop_pair.hpp"
@@ -21,14 +22,14 @@ struct MutualSupport {
   std::vector<Support> contradicting;  ///< chi-squared outside the gate
 };
 
-/// Compares every loop with the nearest others whose two ends lie within `window`
-/// vertices of its own along odometry, whichever way each is stated.
+/// Compares the loops of each of `pairs` (near_pairs).
 ///
 /// One loop and the two short pieces of odometry between the ends predict the
 /// other loop; the prediction does not depend on the estimate, nor on how far
-/// odometry has drifted between the two ends. O(q log n).
+/// odometry has drifted between the two ends. O(pairs log n).
 template <class Pose>
-MutualSupport mutual_support(const ReducedGraph<Pose>& graph, const MapVolume<Pose>& map,
-                             const CovarianceScale& scale, Index window, double gate);
+MutualSupport mutual_support(const ReducedGraph<Pose>& graph,
+                             const std::vector<std::pair<Index, Index>>& pairs,
+                             const MapVolume<Pose>& map, const CovarianceScale& scale, double gate);
 
 }  // namespace isotherm::slam::detail

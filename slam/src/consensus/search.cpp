@@ -9,8 +9,8 @@
 #include "conflicts.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/statistics.hpp"
+#include "near_pairs.hpp"
 #include "prediction.hpp"
-#include "variance_components.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -22,7 +22,10 @@ constexpr int kMostDrops = 3;         // a loop dropped so often is not tried ag
 constexpr int kCalibrations = 6;      // of the covariance scales, on proven loops
 constexpr int kLastCalibrations = 2;  // and with the likely ones
 constexpr int kMostDoublings = 4;     // of odometry's covariance, where it refutes every loop
-constexpr double kWorthRescaling = 1.1;
+// An accepted loop is dropped beyond twice the deviations that an average one would
+// need to meet the gate: real errors have heavy tails, and where it was accepted it had
+// evidence of its own.
+constexpr double kDropFactor = 4.0;
 
 double log_odds_of(double probability) { return std::log(probability / (1.0 - probability)); }
 
@@ -36,10 +39,12 @@ Search<Pose>::Search(const ReducedGraph<Pose>& graph, const ConsensusOptions& op
       required_odds_(log_odds_of(1.0 - options.significance)),
       map_(graph.poses),
       estimate_(graph),
+      near_pairs_(near_pairs(graph, options.window)),
+      calibration_(graph, near_pairs_),
       states_(graph.loops.size()),
       accepted_(graph.loops.size(), false) {
-  forget_bounds();
-  find_support();
+  if (options.calibrate) calibration_.learn_from_cycles();
+  judge_anew();
 }
 
 template <class Pose>
@@ -57,7 +62,8 @@ void Search<Pose>::accept_and_calibrate(int most_calibrations) {
   accept_while_possible();
   if (!options_.calibrate) return;
   for (int k = 0; k < kMostDoublings && odometry_refutes_all(); ++k) {
-    rescale({2.0 * scale_.odometry, scale_.loops});
+    calibration_.double_odometry();
+    judge_anew();
     accept_while_possible();
   }
   for (int k = 0; k < most_calibrations && calibrate(); ++k) accept_while_possible();
@@ -67,7 +73,7 @@ void Search<Pose>::accept_and_calibrate(int most_calibrations) {
 template <class Pose>
 bool Search<Pose>::odometry_refutes_all() const {
   for (std::size_t k = 0; k < states_.size(); ++k) {
-    if (accepted_[k] || inside_gate(static_cast<Index>(k))) return false;
+    if (!refuted(static_cast<Index>(k))) return false;
   }
   return true;
 }
@@ -77,7 +83,8 @@ void Search<Pose>::accept_while_possible() {
   while (true) {
     settle();
     assess();
-    learn_fractions();
+    learn_prior();
+    learn_alikeness();
     if (static_cast<int>(rounds_.size()) >= options_.max_rounds) {
       settled_ = false;
       return;
@@ -98,14 +105,14 @@ bool Search<Pose>::accept_next_batch() {
 // by a bound is judged afresh; true if that lets one be accepted after all.
 template <class Pose>
 bool Search<Pose>::readmit() {
-  Selection refuted;
+  Selection out;
   for (std::size_t k = 0; k < states_.size(); ++k) {
-    if (!accepted_[k] && states_[k].connected && !inside_gate(static_cast<Index>(k))) {
-      refuted.push_back(static_cast<Index>(k));
-    }
+    const auto loop = static_cast<Index>(k);
+    if (states_[k].connected && refuted(loop)) out.push_back(loop);
   }
-  weigh_afresh(refuted);
-  learn_fractions();
+  weigh_afresh(out);
+  learn_prior();
+  learn_alikeness();
   return accept_next_batch();
 }
 
@@ -115,35 +122,43 @@ template <class Pose>
 void Search<Pose>::settle() {
   do {
     tell_progress();
-    estimate_.update(accepted_, scale_, kStepsPerRound);
+    estimate_.update(accepted_, calibration_.scale(), kStepsPerRound);
   } while (drop_inconsistent());
 }
 
 template <class Pose>
+double Search<Pose>::drop_gate() const {
+  return gate_ * std::max(1.0, kDropFactor * calibration_.loop_level());
+}
+
+template <class Pose>
 bool Search<Pose>::drop_inconsistent() {
-  const auto judge = [this](Index loop) {
+  const double gate = drop_gate();
+  const auto judge = [&](Index loop) {
     auto& state = states_[loop];
     const auto& link = graph_.loops[loop];
     state.evidence.chi2 =
-        fitted_chi2(link, estimate_.residual(link), state.covariance, scale_.loops);
-    return state.evidence.chi2 <= gate_;
+        fitted_chi2(link, estimate_.residual(link), state.covariance, calibration_.scale().loops);
+    return state.evidence.chi2 <= gate;
   };
+  // An old covariance is an upper bound, and so is the chi-squared it gives.
   Selection doubtful;
   for (std::size_t k = 0; k < states_.size(); ++k) {
     const auto loop = static_cast<Index>(k);
-    if (accepted_[k] && !judge(loop)) doubtful.push_back(loop);
+    if (accepted_[k] && (!states_[k].fit_known || !judge(loop))) doubtful.push_back(loop);
   }
-  // An old covariance is an upper bound, and so is the chi-squared it gives.
   const auto covariances = estimate_.relative_covariances(doubtful);
   double worst = 0.0;
   for (std::size_t k = 0; k < doubtful.size(); ++k) {
-    states_[doubtful[k]].covariance = covariances[k];
+    auto& state = states_[doubtful[k]];
+    state.covariance = covariances[k];
+    state.fit_known = true;
     judge(doubtful[k]);
-    worst = std::max(worst, states_[doubtful[k]].evidence.chi2);
+    worst = std::max(worst, state.evidence.chi2);
   }
-  if (worst <= gate_) return false;
+  if (worst <= gate) return false;
   for (const Index k : doubtful) {
-    if (states_[k].evidence.chi2 >= std::max(gate_, 0.5 * worst)) drop(k);
+    if (states_[k].evidence.chi2 >= std::max(gate, 0.5 * worst)) drop(k);
   }
   forget_bounds();
   return true;
@@ -162,14 +177,16 @@ void Search<Pose>::drop(Index loop) {
 template <class Pose>
 void Search<Pose>::forget_bounds() {
   for (std::size_t k = 0; k < states_.size(); ++k) {
-    states_[k].covariance = graph_.odometry_covariance[k] * scale_.odometry;
+    states_[k].covariance = graph_.odometry_covariance[k] * calibration_.scale().odometry;
+    states_[k].fit_known = false;
   }
 }
 
 template <class Pose>
 Evidence Search<Pose>::weigh_loop(Index loop, const Matrix& covariance) const {
   const auto& link = graph_.loops[loop];
-  return weigh_prediction(link, estimate_.residual(link), covariance, scale_.loops, map_);
+  return weigh_prediction(link, estimate_.residual(link), covariance, calibration_.scale().loops,
+                          map_);
 }
 
 // Accepting loops only ever sharpens predictions, so that an old covariance is an
@@ -216,10 +233,11 @@ typename Search<Pose>::Selection Search<Pose>::in_question() const {
 
 template <class Pose>
 std::vector<double> Search<Pose>::log_odds() const {
-  const double prior = std::log(inlier_fraction_ / (1.0 - inlier_fraction_));
   std::vector<double> odds;
   odds.reserve(states_.size());
-  for (const auto& state : states_) odds.push_back(state.evidence.log_ratio + prior);
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    odds.push_back(states_[k].evidence.log_ratio + prior_.log_odds(span(static_cast<Index>(k))));
+  }
   return odds;
 }
 
@@ -247,10 +265,12 @@ void Search<Pose>::accept(const Batch& batch) {
   const int round = static_cast<int>(rounds_.size()) + 1;
   for (const Index k : batch.loops) {
     accepted_[k] = true;
-    states_[k].round = round;
     const auto& link = graph_.loops[k];
-    Matrix& covariance = states_[k].covariance;
-    covariance = sharpened(link, estimate_.residual(link), covariance, scale_.loops);
+    auto& state = states_[k];
+    state.round = round;
+    state.covariance =
+        sharpened(link, estimate_.residual(link), state.covariance, calibration_.scale().loops);
+    state.fit_known = true;
   }
   ConsensusRound summary;
   summary.accepted = static_cast<std::int64_t>(batch.loops.size());
@@ -268,47 +288,47 @@ void Search<Pose>::tell_progress() const {
   if (!options_.progress({"consensus", done, states_.size()})) throw Cancelled();
 }
 
-// Beta posteriors with uniform priors; loops that are refuted count as false.
+// Loops that are refuted count as false.
 template <class Pose>
-void Search<Pose>::learn_fractions() {
-  double kept = 1.0;
-  double refuted = 1.0;
+void Search<Pose>::learn_prior() {
+  std::vector<PriorBySpan::Decision> decided;
   for (std::size_t k = 0; k < states_.size(); ++k) {
-    if (accepted_[k]) {
-      kept += 1.0;
-    } else if (!inside_gate(static_cast<Index>(k))) {
-      refuted += 1.0;
-    }
+    const auto loop = static_cast<Index>(k);
+    if (accepted_[k] || refuted(loop)) decided.push_back({span(loop), accepted_[k]});
   }
-  inlier_fraction_ = kept / (kept + refuted);
+  prior_ = PriorBySpan(decided);
+}
 
+// A Beta posterior from the pairs of which both are refuted.
+template <class Pose>
+void Search<Pose>::learn_alikeness() {
   const auto both_refuted = [this](const Support& pair) {
-    return !accepted_[pair.first] && !accepted_[pair.second] && !inside_gate(pair.first) &&
-           !inside_gate(pair.second);
+    return refuted(pair.first) && refuted(pair.second);
   };
-  const auto alike = static_cast<double>(
-      std::count_if(support_.agreeing.begin(), support_.agreeing.end(), both_refuted));
-  const auto unlike = static_cast<double>(
-      std::count_if(support_.contradicting.begin(), support_.contradicting.end(), both_refuted));
+  const auto alike = static_cast<double>(std::ranges::count_if(support_.agreeing, both_refuted));
+  const auto unlike =
+      static_cast<double>(std::ranges::count_if(support_.contradicting, both_refuted));
   alike_fraction_ = (alike + 1.0) / (alike + unlike + 5.0);
+}
+
+template <class Pose>
+Index Search<Pose>::span(Index loop) const {
+  const auto& link = graph_.loops[loop];
+  return std::abs(graph_.vertex[link.a] - graph_.vertex[link.b]);
 }
 
 template <class Pose>
 bool Search<Pose>::calibrate() {
   std::vector<double> probability = log_odds();
   for (double& p : probability) p = 1.0 / (1.0 + std::exp(-p));
-  const CovarianceScale next =
-      variance_components(graph_, estimate_, accepted_, probability, scale_);
-  const double loop_change = std::abs(std::log(next.loops / scale_.loops));
-  const double odometry_change = std::abs(std::log(next.odometry / scale_.odometry));
-  if (std::max(loop_change, odometry_change) < std::log(kWorthRescaling)) return false;
-  rescale(next);
-  return true;
+  const bool changed = calibration_.learn_from_accepted(estimate_, accepted_, probability);
+  if (changed) judge_anew();
+  return changed;
 }
 
+// At new scales every old judgement is void.
 template <class Pose>
-void Search<Pose>::rescale(const CovarianceScale& scale) {
-  scale_ = scale;
+void Search<Pose>::judge_anew() {
   for (auto& state : states_) state.drops = 0;
   forget_bounds();
   find_support();
@@ -316,27 +336,27 @@ void Search<Pose>::rescale(const CovarianceScale& scale) {
 
 template <class Pose>
 void Search<Pose>::find_support() {
-  support_ = mutual_support(graph_, map_, scale_, options_.window, gate_);
+  support_ = mutual_support(graph_, near_pairs_, map_, calibration_.scale(), gate_);
 }
 
 template <class Pose>
 void Search<Pose>::report(ConsensusResult& result) const {
   result.rounds = rounds_;
-  result.inlier_fraction = inlier_fraction_;
-  result.odometry_scale = scale_.odometry;
-  result.loop_scale = scale_.loops;
+  result.inlier_fraction = prior_.fraction();
+  result.odometry_scale = calibration_.scale().odometry;
+  result.loop_scale = calibration_.scale().loops;
   result.settled = settled_;
   result.details.resize(states_.size());
-  std::vector<bool> refuted(states_.size(), false);
+  std::vector<bool> pruned(states_.size(), false);
   for (std::size_t k = 0; k < states_.size(); ++k) {
     const auto& state = states_[k];
     auto& verdict = result.verdicts[k];
     verdict.score = state.evidence.chi2;
-    verdict.threshold = gate_;
+    verdict.threshold = accepted_[k] ? drop_gate() : gate_;
     if (accepted_[k]) {
       verdict.stage = "round " + std::to_string(state.round);
-    } else if (state.evidence.chi2 > gate_) {
-      refuted[k] = true;
+    } else if (refuted(static_cast<Index>(k))) {
+      pruned[k] = true;
       verdict.verdict = Verdict::prune;
       verdict.stage = "refuted";
     } else {
@@ -349,7 +369,7 @@ void Search<Pose>::report(ConsensusResult& result) const {
     info.round = state.round;
     info.connected = state.connected;
   }
-  auto conflicts = name_conflicts(graph_, map_, scale_, gate_, accepted_, refuted);
+  auto conflicts = name_conflicts(graph_, map_, calibration_.scale(), gate_, accepted_, pruned);
   for (std::size_t k = 0; k < states_.size(); ++k) {
     result.details[k].conflicts = std::move(conflicts[k]);
   }

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "calibration.hpp"
 #include "estimate.hpp"
 #include "isotherm/slam/consensus.hpp"
 #include "map_volume.hpp"
 #include "mutual_support.hpp"
+#include "prior_by_span.hpp"
 #include "reduced_graph.hpp"
 
 namespace isotherm::slam::detail {
@@ -34,8 +37,10 @@ class Search {
     int round = 0;
     int drops = 0;
     // Of T_a^-1 T_b as predicted by the other accepted loops, or for an accepted loop
-    // by all of them: as last solved for, and so an upper bound.
+    // by all of them: as last solved for, and so an upper bound. What is known of an
+    // accepted loop is lost when bounds are forgotten.
     Matrix covariance = Matrix::Zero();
+    bool fit_known = false;
     Evidence evidence;
   };
   struct Batch {
@@ -55,15 +60,19 @@ class Search {
   void assess();
   void weigh_afresh(const Selection& loops);
   Evidence weigh_loop(Index loop, const Matrix& covariance) const;
+  bool refuted(Index loop) const { return !accepted_[loop] && !inside_gate(loop); }
 
   Selection in_question() const;
   Batch next_batch() const;
   std::vector<double> log_odds() const;
-  void learn_fractions();
   void accept(const Batch& batch);
+  void learn_prior();
+  void learn_alikeness();
   bool calibrate();
-  void rescale(const CovarianceScale& scale);
+  void judge_anew();
   void find_support();
+  Index span(Index loop) const;
+  double drop_gate() const;
   void tell_progress() const;
   void report(ConsensusResult& result) const;
   bool inside_gate(Index loop) const { return states_[loop].evidence.chi2 <= gate_; }
@@ -74,12 +83,13 @@ class Search {
   double required_odds_;  // log odds from which a loop counts as proven
   MapVolume<Pose> map_;
   Estimate<Pose> estimate_;
-  CovarianceScale scale_;
+  std::vector<std::pair<Index, Index>> near_pairs_;
+  Calibration<Pose> calibration_;
   MutualSupport support_;
   std::vector<State> states_;
   std::vector<bool> accepted_;
   std::vector<ConsensusRound> rounds_;
-  double inlier_fraction_ = 0.5;
+  PriorBySpan prior_;
   double alike_fraction_ = 0.2;  // of false loops that agree with a neighbouring false loop
   bool take_likely_ = false;     // accept unproven loops that are more likely true than not
   bool settled_ = true;

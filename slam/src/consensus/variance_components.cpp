@@ -1,16 +1,10 @@
 #include "variance_components.hpp"
 
-#include <algorithm>
-
 namespace isotherm::slam::detail {
 namespace {
 
-constexpr double kLargestChange = 2.0;
-
-double moved(double present, double cost, double redundancy) {
-  if (redundancy < 1.0) return present;
-  const double wanted = cost / redundancy;
-  return std::max(1.0, std::clamp(wanted, present / kLargestChange, present * kLargestChange));
+double over_redundancy(double cost, double redundancy, double otherwise) {
+  return redundancy < 1.0 ? otherwise : cost / redundancy;
 }
 
 }  // namespace
@@ -42,8 +36,8 @@ CovarianceScale variance_components(const ReducedGraph<Pose>& graph, const Estim
   const auto constraints = static_cast<double>(graph.steps.size() + loops.size());
   const auto unknowns = static_cast<double>(graph.node_count() - estimate.component_count());
   const double redundancy = Pose::kDof * (constraints - unknowns);
-  return {moved(scale.odometry, estimate.odometry_cost(), redundancy - loop_redundancy),
-          moved(scale.loops, loop_cost, weighted_redundancy)};
+  return {over_redundancy(estimate.odometry_cost(), redundancy - loop_redundancy, scale.odometry),
+          over_redundancy(loop_cost, weighted_redundancy, scale.loops)};
 }
 
 template CovarianceScale variance_components(const ReducedGraph<Pose2>&, const Estimate<Pose2>&,

@@ -7,8 +7,8 @@
 namespace isotherm::slam::detail {
 
 /// Factors on the covariances of odometry and of loops under which the accepted loops
-/// and odometry are as consistent as they should be, moved to from `scale` by at most a
-/// factor of two, and never below 1: what a file claims is not tightened.
+/// and odometry are as consistent as they should be; those of `scale` where there is
+/// too little redundancy to tell.
 ///
 /// Variance components (F. Helmert): cost over redundancy, a loop's redundancy being
 /// tr(I - Sigma^-1 P) with its fitted covariance P, and odometry's the rest. Accepted

@@ -6,6 +6,7 @@
 
 #include "consensus/map_volume.hpp"
 #include "consensus/mutual_support.hpp"
+#include "consensus/near_pairs.hpp"
 #include "slam/loop_graph.hpp"
 
 namespace isotherm::slam::detail {
@@ -72,7 +73,7 @@ TYPED_TEST(MutualSupportOf, NeighboursAgreeWhicheverWayTheyAreStated) {
   const auto graph = this->two_passes(random);
   const auto reduced = reduce(graph, edge_roles(graph));
   const MapVolume<Pose> map(reduced.poses);
-  const auto support = mutual_support(reduced, map, {}, 20, 25.0);
+  const auto support = mutual_support(reduced, near_pairs(reduced, 20), map, {}, 25.0);
   EXPECT_EQ(support.agreeing.size(), 6u) << "every pair of the four";
   EXPECT_TRUE(support.contradicting.empty());
   for (std::size_t k = 0; k + 1 < support.agreeing.size(); ++k) {
@@ -90,10 +91,10 @@ TYPED_TEST(MutualSupportOf, AFalseNeighbourContradictsAndADistantOneIsNotCompare
   wrong.T_from_to = wrong.T_from_to * Pose::exp(xi);
   const auto reduced = reduce(graph, edge_roles(graph));
   const MapVolume<Pose> map(reduced.poses);
-  const auto support = mutual_support(reduced, map, {}, 20, 25.0);
+  const auto support = mutual_support(reduced, near_pairs(reduced, 20), map, {}, 25.0);
   EXPECT_EQ(support.agreeing.size(), 3u);
   EXPECT_EQ(support.contradicting.size(), 3u);
-  const auto close = mutual_support(reduced, map, {}, 3, 25.0);
+  const auto close = mutual_support(reduced, near_pairs(reduced, 3), map, {}, 25.0);
   EXPECT_EQ(close.agreeing.size() + close.contradicting.size(), 3u) << "only direct neighbours";
 }
 

@@ -21,12 +21,11 @@ struct ConsensusOptions {
   /// Loops whose ends lie within this many vertices of each other, at both ends,
   /// can confirm each other; > 0.
   Index window = 20;
-  /// Estimate factors on the covariances of odometry and of loops from the data;
-  /// they are never taken as smaller than the file says.
+  /// Estimate factors on the covariances of odometry and of loops from the data. Those
+  /// of loops are never taken as smaller than the file says, those of odometry only as
+  /// far as short cycles vouch for.
   bool calibrate = true;
   int max_rounds = 200;  ///< batches accepted at most, > 0
-  /// As for other methods, >= 0; the search itself runs on one thread.
-  int threads = 0;
   ProgressCallback progress = {};
 
   /// @throws InvalidArgument naming the field that is out of range.
@@ -66,7 +65,8 @@ struct ConsensusRound {
 
 struct ConsensusResult {
   /// One a candidate, in file order: score is chi-squared against the prediction of
-  /// the accepted loops, threshold its gate, stage the round or reason.
+  /// the accepted loops, threshold its gate (wider for an accepted loop), stage the
+  /// round or reason.
   spectral::EdgeVerdicts verdicts;
   std::vector<ConsensusDetail> details;  ///< one a candidate
   std::vector<ConsensusRound> rounds;

@@ -1,0 +1,63 @@
+#include "calibration.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "short_cycles.hpp"
+#include "variance_components.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+constexpr double kMargin = 10.0;        // over what short cycles say of odometry
+constexpr double kLargestChange = 2.0;  // of a factor, in one step
+constexpr double kWorthRescaling = 1.1;
+
+double moved(double present, double wanted, double least) {
+  return std::max(least, std::clamp(wanted, present / kLargestChange, present * kLargestChange));
+}
+
+bool differ(double a, double b) { return std::abs(std::log(a / b)) >= std::log(kWorthRescaling); }
+
+}  // namespace
+
+template <class Pose>
+Calibration<Pose>::Calibration(const ReducedGraph<Pose>& graph, const Pairs& pairs)
+    : graph_(graph), pairs_(pairs), cycle_chi2_(cycle_chi2(graph, pairs)) {}
+
+template <class Pose>
+void Calibration<Pose>::learn_from_cycles() {
+  least_odometry_ = least_odometry(cycle_chi2_);
+  scale_.odometry = least_odometry_;
+}
+
+template <class Pose>
+bool Calibration<Pose>::learn_from_accepted(const Estimate<Pose>& estimate,
+                                            const std::vector<bool>& accepted,
+                                            const std::vector<double>& probability) {
+  std::vector<double> chi2;
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    if (accepted[pairs_[k].first] && accepted[pairs_[k].second]) chi2.push_back(cycle_chi2_[k]);
+  }
+  least_odometry_ = std::min(least_odometry_, least_odometry(chi2));
+
+  const auto wanted = variance_components(graph_, estimate, accepted, probability, scale_);
+  const CovarianceScale next = {moved(scale_.odometry, wanted.odometry, least_odometry_),
+                                moved(scale_.loops, wanted.loops, 1.0)};
+  const double level = wanted.loops / next.loops;
+  const bool rescaled = differ(next.odometry, scale_.odometry) || differ(next.loops, scale_.loops);
+  const bool changed = rescaled || differ(level, loop_level_);
+  if (rescaled) scale_ = next;
+  loop_level_ = level;
+  return changed;
+}
+
+template <class Pose>
+double Calibration<Pose>::least_odometry(const std::vector<double>& chi2) const {
+  return std::min(1.0, kMargin * cycle_scale(chi2, Pose::kDof));
+}
+
+template class Calibration<Pose2>;
+template class Calibration<Pose3>;
+
+}  // namespace isotherm::slam::detail

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "isotherm/spectral/types.hpp"
+
+namespace isotherm::slam::detail {
+
+using spectral::Index;
+
+/// Prior odds of a loop, learnt from those decided so far: how many of them were true,
+/// among loops that span about as many vertices.
+///
+/// Where false loops join places at random and true ones mostly join neighbours, a short
+/// loop is very likely true. Spans are told apart by their power of two; a class with
+/// few decided loops leans on the fraction of all (a Beta prior), which itself starts
+/// at one half.
+class PriorBySpan {
+ public:
+  /// How a loop was decided.
+  struct Decision {
+    Index span = 0;  ///< vertices between its ends
+    bool kept = false;
+  };
+
+  /// Before anything is decided.
+  PriorBySpan() : PriorBySpan(std::span<const Decision>()) {}
+  explicit PriorBySpan(std::span<const Decision> decided);
+
+  double log_odds(Index span) const;
+
+  /// Fraction of true loops among all.
+  double fraction() const noexcept { return fraction_; }
+
+ private:
+  static constexpr std::size_t kClasses = 33;  // no span, and one a power of two
+  static std::size_t class_of(Index span);
+
+  double fraction_ = 0.5;
+  std::array<double, kClasses> log_odds_{};
+};
+
+}  // namespace isotherm::slam::detail

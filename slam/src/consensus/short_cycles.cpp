@@ -1,0 +1,42 @@
+#include "short_cycles.hpp"
+
+#include <algorithm>
+
+#include "isotherm/base/statistics.hpp"
+#include "loop_pair.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+constexpr double kQuantile = 0.2;
+constexpr std::size_t kFewestCycles = 50;
+
+}  // namespace
+
+template <class Pose>
+std::vector<double> cycle_chi2(const ReducedGraph<Pose>& graph,
+                               const std::vector<std::pair<Index, Index>>& pairs) {
+  const auto loops = forward_loops(graph, {});
+  const MapVolume<Pose> map(graph.poses);
+  std::vector<double> chi2;
+  chi2.reserve(pairs.size());
+  for (const auto& [first, second] : pairs) {
+    chi2.push_back(compare(graph, {}, loops[first], loops[second], map).chi2);
+  }
+  return chi2;
+}
+
+double cycle_scale(std::vector<double> chi2, int dof) {
+  if (chi2.size() < kFewestCycles) return 1.0;
+  const auto at =
+      chi2.begin() + static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(chi2.size()));
+  std::nth_element(chi2.begin(), at, chi2.end());
+  return *at / chi_squared_quantile(kQuantile, dof);
+}
+
+template std::vector<double> cycle_chi2(const ReducedGraph<Pose2>&,
+                                        const std::vector<std::pair<Index, Index>>&);
+template std::vector<double> cycle_chi2(const ReducedGraph<Pose3>&,
+                                        const std::vector<std::pair<Index, Index>>&);
+
+}  // namespace isotherm::slam::detail

@@ -1,0 +1,72 @@
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "consensus/prior_by_span.hpp"
+#include "consensus/short_cycles.hpp"
+#include "isotherm/base/random.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+// Sums of squares of normals, times the scale.
+std::vector<double> chi_squared_sample(Random& random, int count, int dof, double scale) {
+  std::vector<double> sample(static_cast<std::size_t>(count), 0.0);
+  for (double& x : sample) {
+    for (int d = 0; d < dof; ++d) {
+      const double z = random.normal();
+      x += scale * z * z;
+    }
+  }
+  return sample;
+}
+
+TEST(CycleScale, IsTheScaleOfASample) {
+  Random random(51);
+  for (const int dof : {3, 6}) {
+    for (const double scale : {1e-4, 1.0, 25.0}) {
+      const double found = cycle_scale(chi_squared_sample(random, 4000, dof, scale), dof);
+      EXPECT_NEAR(found / scale, 1.0, 0.1) << dof << " " << scale;
+    }
+  }
+}
+
+TEST(CycleScale, FalseCyclesMakeItLargerButNotByFar) {
+  Random random(52);
+  auto sample = chi_squared_sample(random, 1000, 3, 0.01);
+  for (int k = 0; k < 2000; ++k) sample.push_back(random.uniform(10.0, 1000.0));
+  const double found = cycle_scale(sample, 3);
+  EXPECT_GE(found, 0.01);
+  EXPECT_LE(found, 0.05);
+}
+
+TEST(CycleScale, SaysNothingOfAFewCycles) {
+  EXPECT_EQ(cycle_scale({}, 3), 1.0);
+  EXPECT_EQ(cycle_scale(std::vector<double>(20, 1e-6), 3), 1.0);
+}
+
+TEST(PriorBySpan, IsEvenBeforeAnythingIsDecided) {
+  const PriorBySpan prior;
+  EXPECT_DOUBLE_EQ(prior.fraction(), 0.5);
+  for (const Index span : {0, 1, 1000, 2000000000}) EXPECT_DOUBLE_EQ(prior.log_odds(span), 0.0);
+}
+
+TEST(PriorBySpan, TellsShortLoopsFromLongOnes) {
+  std::vector<PriorBySpan::Decision> decided;
+  for (int k = 0; k < 500; ++k) {
+    decided.push_back({.span = 2 + k % 2, .kept = true});
+    decided.push_back({.span = 512 + k, .kept = k % 5 == 0});
+  }
+  const PriorBySpan prior(decided);
+  // All: 601 of 1002. Short: 500 of 500; long: 100 of 500; ten more lean on all.
+  const double all = 601.0 / 1002.0;
+  EXPECT_DOUBLE_EQ(prior.fraction(), all);
+  EXPECT_NEAR(prior.log_odds(3), std::log((500.0 + 10.0 * all) / (10.0 * (1.0 - all))), 1e-12);
+  EXPECT_NEAR(prior.log_odds(600), std::log((100.0 + 10.0 * all) / (400.0 + 10.0 * (1.0 - all))),
+              1e-12);
+  EXPECT_NEAR(prior.log_odds(64), std::log(all / (1.0 - all)), 1e-12) << "none of that span";
+}
+
+}  // namespace
+}  // namespace isotherm::slam::detail
