@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "bridges.hpp"
 #include "control_pairs.hpp"
+#include "plane_scores.hpp"
 #include "series_reduction.hpp"
 #include "simple_graph.hpp"
 #include "two_groups.hpp"
@@ -14,7 +17,7 @@ namespace isotherm::spectral::detail {
 namespace {
 
 constexpr int kLongestDetour = 12;
-constexpr double kBudget = 2e9;  // steps along edges a round
+constexpr double kBudget = 1e9;  // steps along edges a round
 constexpr double kFirstScale = 0.5;
 
 /// Fewest steps between the ends of an edge without it, at most `most`; `most` + 1 if
@@ -61,8 +64,66 @@ void update_scores(const std::vector<double>& affinities, std::vector<double>& s
   }
 }
 
+/// Every so manieth pair, so that about a few thousand are left: enough for a rate.
+std::vector<VertexPair> thin_out(const std::vector<VertexPair>& pairs) {
+  constexpr std::size_t kAbout = 5000;
+  const std::size_t stride = pairs.size() / kAbout + 1;
+  std::vector<VertexPair> thin;
+  for (std::size_t k = 0; k < pairs.size(); k += stride) thin.push_back(pairs[k]);
+  return thin;
+}
+
+/// Judges the edges once more by what they cross, where the graph is nearly planar.
+void judge_in_plane(const WeightedGraph& graph, std::span<const double> lengths,
+                    const std::vector<VertexPair>& pairs, const WalkAffinityOptions& walks,
+                    AnnealedHeat& result) {
+  const auto scores = plane_scores(graph, lengths, result.scores, thin_out(pairs), walks);
+  if (!scores) return;
+  auto groups = separate_groups(scores->edges, scores->pairs);
+  result.scores = scores->edges;
+  result.false_count = groups.false_count;
+  result.truth = std::move(groups.truth);
+  result.in_plane = true;
+}
+
+/// Edges, from the most suspicious on.
+std::vector<Index> by_score(const std::vector<double>& scores) {
+  std::vector<Index> order(scores.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return scores[a] > scores[b]; });
+  return order;
+}
+
+/// From judgements about chains, those about each of their edges. A score is lowered to
+/// that of single edges that are as likely true.
+void share_among_chains(std::span<const double> lengths, AnnealedHeat& result) {
+  const auto order = by_score(result.scores);
+  const auto of_chains = result;
+  for (std::size_t k = 0; k < lengths.size(); ++k) {
+    if (lengths[k] == 1.0) continue;
+    result.truth[k] = 1.0 - (1.0 - of_chains.truth[k]) / lengths[k];
+    const auto alike = std::partition_point(order.begin(), order.end(), [&](Index other) {
+      return of_chains.truth[other] < result.truth[k];
+    });
+    if (alike != order.end()) {
+      result.scores[k] = std::min(of_chains.scores[k], of_chains.scores[*alike]);
+    }
+  }
+}
+
+double find_threshold(const AnnealedHeat& result, double chance) {
+  const auto order = by_score(result.scores);
+  // The probability falls with the score, so that a score stands for it.
+  const auto most = std::min(static_cast<std::size_t>(std::ceil(result.false_count)), order.size());
+  std::size_t pruned = 0;
+  while (pruned < most && result.truth[order[pruned]] < chance) ++pruned;
+  if (pruned == 0) return std::numeric_limits<double>::infinity();
+  return pruned < order.size() ? result.scores[order[pruned]] : 0.0;
+}
+
 /// Judges the edges of a graph without bridges and chains.
-AnnealedHeat anneal_reduced(const WeightedGraph& graph, const AnnealedHeatOptions& options) {
+AnnealedHeat anneal_reduced(const WeightedGraph& graph, std::span<const double> lengths,
+                            const AnnealedHeatOptions& options) {
   AnnealedHeat result;
   result.scores.assign(graph.edges().size(), 0.0);
   result.truth.assign(graph.edges().size(), 1.0);
@@ -87,6 +148,14 @@ AnnealedHeat anneal_reduced(const WeightedGraph& graph, const AnnealedHeatOption
       trust[e] = result.truth[e] < options.chance ? 0.0 : result.truth[e];
     }
   }
+  judge_in_plane(graph, lengths, pairs,
+                 {.scale = result.scale,
+                  .horizon = result.horizon,
+                  .threads = options.threads,
+                  .progress = options.progress},
+                 result);
+  share_among_chains(lengths, result);
+  result.threshold = find_threshold(result, options.chance);
   return result;
 }
 
@@ -96,11 +165,13 @@ AnnealedHeat anneal_heat(const WeightedGraph& graph, const AnnealedHeatOptions& 
   const auto simple = merge_parallel_edges(graph);
   const auto bridge = find_bridges(simple.graph);
   const auto reduction = reduce_series(simple.graph, bridge);
-  const auto reduced = anneal_reduced(reduction.graph, options);
+  const auto reduced = anneal_reduced(reduction.graph, reduction.lengths, options);
   AnnealedHeat result;
   result.false_count = reduced.false_count;
+  result.threshold = reduced.threshold;
   result.scale = reduced.scale;
   result.horizon = reduced.horizon;
+  result.in_plane = reduced.in_plane;
   for (const Index edge : simple.merged) {
     const bool loop = edge == SimpleGraph::kNone;
     const Index chain = loop ? SeriesReduction::kNone : reduction.chains[edge];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "isotherm/base/progress.hpp"
@@ -27,9 +28,14 @@ struct AnnealedHeat {
   /// bridges, self-loops, and chains that close on themselves.
   std::vector<double> truth;
   std::vector<bool> bridge;  ///< nothing is known about these
-  double false_count = 0.0;  ///< estimated number of false edges
-  double scale = 0.0;        ///< of the last round, in expected steps
-  int horizon = 0;           ///< of the last round, in steps
+  double false_count = 0.0;  ///< estimated number of false edges, a chain counted once
+  /// Edges that score more are to be pruned: those less likely true than `chance`, but no more
+  /// of them than there are false ones by the estimate, so that one expects to prune as many
+  /// true edges as one keeps false ones. Infinite if there are none.
+  double threshold = std::numeric_limits<double>::infinity();
+  double scale = 0.0;     ///< of the last round, in expected steps
+  int horizon = 0;        ///< of the last round, in steps
+  bool in_plane = false;  ///< whether edges were judged by what they cross
 };
 
 /// A score that no affinity reaches.
@@ -39,12 +45,14 @@ inline constexpr double kNoWalk = 1000.0;
 /// and again in the graph weighted by that judgement, at scales that double.
 ///
 /// Parallel edges are judged as one, bridges are left out, and a chain of edges through vertices of
-/// degree two is judged as one edge (series_reduction.hpp): each of its edges has the same detour,
-/// which speaks against all or none of them.
+/// degree two is judged as one edge (series_reduction.hpp): each of its edges has the same detour.
+/// If the chain is false, one of its k edges is, and nothing says which: each is false with
+/// 1 / k of the chain's probability.
 ///
 /// Walk affinities (walk_affinity.hpp) of the edges are compared with those of a
 /// control group of pairs of vertices (control_pairs.hpp, two_groups.hpp). The first horizon is
-/// three times the median detour around an edge, as far as that is affordable.
+/// three times the median detour around an edge, as far as that is affordable. Where the graph is
+/// nearly planar, the last judgement is by what the edges cross (plane_scores.hpp).
 /// @throws Cancelled
 AnnealedHeat anneal_heat(const WeightedGraph& graph, const AnnealedHeatOptions& options);
 

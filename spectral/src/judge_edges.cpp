@@ -151,26 +151,18 @@ JudgeEdgesResult judge_by_heat(const WeightedGraph& graph, const JudgeEdgesOptio
                                           .seed = options.seed,
                                           .threads = options.threads,
                                           .progress = options.progress});
-  // The probability falls with the score, so that a threshold stands for the chance.
-  Threshold threshold{0.0, 0.0, true};
-  double certainty = 0.0;
+  Threshold threshold{heat.threshold, 0.0, !std::isfinite(heat.threshold)};
   double count = 0.0;
   for (std::size_t e = 0; e < heat.scores.size(); ++e) {
     const auto& edge = graph.edges()[e];
     if (heat.bridge[e]) heat.scores[e] = kUnknown;
     if (heat.bridge[e] || edge.from == edge.to) continue;
-    certainty += std::abs(2.0 * heat.truth[e] - 1.0);
+    threshold.separation += std::abs(2.0 * heat.truth[e] - 1.0);
     count += 1.0;
-    if (heat.truth[e] < options.chance) {
-      threshold.degenerate = false;
-    } else {
-      threshold.value = std::max(threshold.value, heat.scores[e]);
-    }
   }
-  if (count > 0.0) threshold.separation = certainty / count;
-  if (threshold.degenerate) threshold.value = std::numeric_limits<double>::infinity();
-  const std::string stage =
-      "heat scale " + format_number(heat.scale) + " steps " + std::to_string(heat.horizon);
+  if (count > 0.0) threshold.separation /= count;
+  const std::string stage = "heat scale " + format_number(heat.scale) + " steps " +
+                            std::to_string(heat.horizon) + (heat.in_plane ? " crossings" : "");
   return judge_all(graph, heat.scores, threshold, stage);
 }
 

@@ -73,6 +73,7 @@ SeriesReduction reduce_series(const WeightedGraph& graph, const std::vector<bool
       reduction.chains[edge] = static_cast<Index>(edges.size());
       resistance += 1.0 / graph.edge(edge).weight / static_cast<double>(chain.size());
     }
+    reduction.lengths.push_back(static_cast<double>(chain.size()));
     edges.push_back({ends[0], ends[1], 1.0 / resistance});
   }
   reduction.graph = WeightedGraph(graph.vertex_count(), std::move(edges));

@@ -8,8 +8,9 @@ namespace isotherm::spectral::detail {
 
 /// A graph in which each chain of edges through vertices of degree two is one edge.
 struct SeriesReduction {
-  WeightedGraph graph;        ///< on the same vertices
-  std::vector<Index> chains;  ///< by original edge: the edge it is part of, or kNone
+  WeightedGraph graph;          ///< on the same vertices
+  std::vector<Index> chains;    ///< by original edge: the edge it is part of, or kNone
+  std::vector<double> lengths;  ///< by edge of `graph`: how many original edges are part of it
 
   static constexpr Index kNone = -1;
 };

@@ -21,7 +21,7 @@ double count_from(const std::vector<double>& sorted, double value) {
 /// says how many false ones there are. The least of several quantiles, each with one
 /// standard deviation of its count on top.
 double estimate_false(const std::vector<double>& scores, const std::vector<double>& null_scores) {
-  constexpr std::array kQuantiles = {0.5, 0.6, 0.7, 0.8, 0.9};
+  constexpr std::array kQuantiles = {0.2, 0.3, 0.4, 0.5, 0.6};
   const auto null_count = static_cast<double>(null_scores.size());
   auto least = static_cast<double>(scores.size());
   for (const double quantile : kQuantiles) {

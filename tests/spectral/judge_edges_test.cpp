@@ -112,15 +112,34 @@ TEST(JudgeEdges, HeatStandsAsManyFalseEdgesAsTrueOnes) {
 }
 
 TEST(JudgeEdges, HeatFindsShortcutsWhereThereAreNoTriangles) {
-  const auto grid = grid_graph(40, 40);
+  const auto grid = grid_graph(25, 25);
   std::vector<WeightedEdge> edges(grid.edges().begin(), grid.edges().end());
   Random random(84);
-  for (int k = 0; k < 30; ++k) {
-    edges.push_back({random_vertex(random, 1600), random_vertex(random, 1600), 1.0});
+  for (int k = 0; k < 20; ++k) {
+    edges.push_back({random_vertex(random, 625), random_vertex(random, 625), 1.0});
   }
-  const auto [pruned, left] = heat_errors({1600, std::move(edges)}, 30);
-  EXPECT_LT(pruned, 0.01);
+  const WeightedGraph graph(625, std::move(edges));
+  const auto [pruned, left] = heat_errors(graph, 20);
+  EXPECT_LT(pruned, 0.001);
   EXPECT_LT(left, 0.1);
+  EXPECT_NE(judge_edges(graph).verdicts[0].stage.find("crossings"), std::string::npos);
+}
+
+TEST(JudgeEdges, HeatBlamesNoEdgeOfALongChain) {
+  // A grid, ten shortcuts, and a way through four more vertices that is one as well: at most
+  // one of its five edges is false.
+  const auto grid = grid_graph(20, 20);
+  std::vector<WeightedEdge> edges(grid.edges().begin(), grid.edges().end());
+  for (Index k = 0; k < 10; ++k) edges.push_back({84 + k, 210 + 11 * k, 1.0});
+  const std::vector<Index> chain = {105, 400, 401, 402, 403, 294};
+  for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
+    edges.push_back({chain[k], chain[k + 1], 1.0});
+  }
+  const auto verdicts = judge_edges({404, edges}).verdicts;
+  const auto first = verdicts.begin() + grid.edge_count();
+  const auto pruned = [](const EdgeVerdict& v) { return v.verdict == Verdict::prune; };
+  EXPECT_GE(std::count_if(first, first + 10, pruned), 8);
+  EXPECT_EQ(std::count_if(first + 10, verdicts.end(), pruned), 0);
 }
 
 TEST(JudgeEdges, NearControlFindsShortCircuitsSideBySide) {

@@ -24,6 +24,7 @@ TEST(SeriesReduction, JoinsTheEdgesOfAChain) {
       5, {{0, 3, 2.0}, {1, 2, 1.0}, {0, 1, 0.5}, {3, 2, 0.25}, {0, 4, 1.0}, {4, 3, 1.0}});
   const auto reduction = reduce_series(graph, none(graph));
   EXPECT_THAT(reduction.chains, ElementsAre(0, 1, 1, 1, 2, 2));
+  EXPECT_THAT(reduction.lengths, ElementsAre(1.0, 3.0, 2.0));
   ASSERT_EQ(reduction.graph.edge_count(), 3);
   EXPECT_EQ(reduction.graph.vertex_count(), 5);
   EXPECT_DOUBLE_EQ(reduction.graph.edge(0).weight, 2.0);

@@ -49,8 +49,9 @@ struct JudgeEdgesOptions {
   /// Heat: the pairs that edges are compared with. `near` finds short circuits that run
   /// side by side, at the price of a few more true edges.
   ControlGroup control = ControlGroup::anywhere;
-  /// Heat: an edge is pruned where it is less likely than this to be a true one; in
-  /// (0, 1). Less prunes less; 0.7 balances precision and recall on Swiss rolls.
+  /// Heat: an edge is pruned where it is less likely than this to be a true one, but no
+  /// more edges are than there are false ones by the estimate; in (0, 1). Less prunes less;
+  /// with 0.7 precision and recall are about equal on Swiss rolls.
   double chance = 0.7;
   /// Affinity: diffusion time t of exp(-tL), in units of 1 / weight; finite, > 0.
   /// About one over the weight of a typical edge looks a few hops far.
@@ -95,9 +96,11 @@ struct JudgeEdgesResult {
 /// graph without it, from walks of a few steps, and takes as the probability p that the
 /// edge is a true one its local false discovery rate against random pairs of vertices;
 /// edges are then judged again in the graph weighted by p. Where no walk joins the
-/// ends, the score is 1000 plus that of the round before. Parallel edges are judged as
-/// one, and so is a chain of edges through vertices of degree two. Time n times the edges within
-/// a few steps of a vertex; the other methods' costs are those of their functions.
+/// ends, the score is 1000 plus that of the round before. Where the graph is nearly planar and has
+/// up to some ten thousand edges, a last judgement goes by what each edge crosses. Parallel
+/// edges are judged as one, and so is a chain of edges through vertices of degree two, of
+/// which one at most is taken to be false. Time n times the edges within a few steps of a
+/// vertex; the other methods' costs are those of their functions.
 /// @throws InvalidArgument, NumericalError, Cancelled
 JudgeEdgesResult judge_edges(const WeightedGraph& graph, const JudgeEdgesOptions& options = {});
 
