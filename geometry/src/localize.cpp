@@ -9,10 +9,11 @@
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/statistics.hpp"
 #include "localize/determinacy.hpp"
+#include "localize/firmness.hpp"
 #include "localize/initial_placement.hpp"
-#include "localize/placing.hpp"
 #include "localize/range_information.hpp"
 #include "localize/range_problem.hpp"
+#include "localize/repeats.hpp"
 #include "localize/robust_refine.hpp"
 
 namespace isotherm::geometry {
@@ -34,17 +35,18 @@ class Localization {
         gate_(chi_squared_quantile(1.0 - options.significance, 1)) {}
 
   LocalizeResult run() {
-    const auto trusted = detail::trusted_pairs(problem_, options_);
-    placement_ = detail::place_initially(problem_, anchors_, trusted, gate_, options_);
-    extend();
+    trusted_ = detail::trusted_pairs(problem_, options_);
+    placement_ = detail::place_initially(problem_, anchors_, trusted_, gate_, options_);
     if (options_.method == LocalizeMethod::robust) {
-      decide();
+      use_ = detail::ranges_within(problem_, placement_, gate_);
+      // Where the noise is not known what is firm depends on it.
+      if (!noise_is_given()) decide();
       leave_out_undetermined();
     } else {
       use_ = between_placed();
       fit();
     }
-    judge(trusted);
+    judge();
     explain_the_rest();
     return finish();
   }
@@ -62,19 +64,10 @@ class Localization {
     converged_ = outcome.converged;
   }
 
-  // Nodes outside the patches, from those that have a place.
-  void extend() {
-    detail::place_more(problem_, gate_, placement_);
-    if (options_.method != LocalizeMethod::robust) return;
-    const auto outcome = detail::refine_robustly(problem_, placement_, gate_, options_);
-    result_.iterations += outcome.iterations;
-  }
-
   // Least squares on the kept ranges and leave-one-out tests of all, in turn until
   // the kept ranges stay the same.
   void decide() {
     constexpr int kMostRounds = 10;
-    use_ = detail::ranges_within(problem_, placement_, gate_);
     for (int round = 0; round < kMostRounds; ++round) {
       ++result_.rounds;
       fit();
@@ -90,6 +83,11 @@ class Localization {
       }
       if (!changed && !noise_changed) return;
     }
+  }
+
+  bool noise_is_given() const {
+    const auto& given = problem_.sigma_given;
+    return std::find(given.begin(), given.end(), false) == given.end();
   }
 
   bool keeps_untested(std::size_t k) const { return use_[k] && !checks_[k].is_tested(); }
@@ -140,21 +138,20 @@ class Localization {
     constexpr int kMostRounds = 4;
     statuses_.assign(problem_.nodes, NodeStatus::not_placed);
     for (int round = 0; round < kMostRounds; ++round) {
-      if (!drop_undetermined()) return;
-      while (drop_undetermined()) {
-      }
+      const bool dropped = drop_undetermined();
+      if (round > 0 && !dropped) return;
       decide();
     }
   }
 
   // One look at all placed nodes. True if any was dropped.
   bool drop_undetermined() {
-    auto statuses = detail::determinacy(problem_, use_, placement_);
-    const auto elsewhere = detail::fits_elsewhere(problem_, gate_, options_, placement_);
+    const auto statuses = detail::determinacy(problem_, use_, placement_);
+    const auto firm = detail::firm_nodes(problem_, trusted_, gate_, options_, placement_);
     bool any = false;
     for (Index v = 0; v < problem_.nodes; ++v) {
       if (!placement_.placed[v] || problem_.is_anchor[v]) continue;
-      if (statuses[v] == NodeStatus::localised && !elsewhere[v]) continue;
+      if (statuses[v] == NodeStatus::localised && firm[v]) continue;
       const bool has_rival = statuses[v] == NodeStatus::localised;
       statuses_[v] = has_rival ? NodeStatus::mirrored : statuses[v];
       placement_.placed[v] = false;
@@ -167,7 +164,7 @@ class Localization {
     return any;
   }
 
-  void judge(const std::vector<bool>& trusted) {
+  void judge() {
     checks_ = detail::RangeInformation(problem_, use_, placement_).check_ranges();
     const bool robust = options_.method == LocalizeMethod::robust;
     for (std::size_t k = 0; k < problem_.ranges.size(); ++k) {
@@ -178,8 +175,8 @@ class Localization {
       verdict.score = checks_[k].chi2;
       verdict.threshold = robust ? gate_ : std::numeric_limits<double>::infinity();
       if (!checks_[k].checked) {
-        verdict.verdict = trusted[problem_.pair_of[k]] ? Verdict::ambiguous : Verdict::prune;
-        verdict.stage = trusted[problem_.pair_of[k]] ? "no position" : "heat";
+        verdict.verdict = trusted_[problem_.pair_of[k]] ? Verdict::ambiguous : Verdict::prune;
+        verdict.stage = trusted_[problem_.pair_of[k]] ? "no position" : "heat";
       } else if (!checks_[k].is_tested()) {
         verdict.verdict = Verdict::ambiguous;
         verdict.stage = "unchecked";
@@ -242,12 +239,29 @@ class Localization {
   Placement placement_;
   const Placement anchors_;
   double gate_;
-  std::vector<bool> use_;
+  std::vector<bool> trusted_;  // pairs
+  std::vector<bool> use_;      // ranges
   std::vector<RangeCheck> checks_;
   std::vector<NodeStatus> statuses_;
   bool converged_ = true;
   LocalizeResult result_;
 };
+
+// One range a pair of nodes, then verdicts on all that there were.
+LocalizeResult localize_merged(const RangeNetwork& network, const LocalizeOptions& options) {
+  const auto merged = detail::merge_repeats(network);
+  auto result = Localization(merged.network, options).run();
+  const double gate = options.method == LocalizeMethod::robust
+                          ? chi_squared_quantile(1.0 - options.significance, 1)
+                          : std::numeric_limits<double>::infinity();
+  std::vector<double> sigmas;
+  for (const auto& range : merged.network.ranges) {
+    sigmas.push_back(range.variance > 0.0 ? result.noise_factor * std::sqrt(range.variance)
+                                          : result.sigma);
+  }
+  result.verdicts = detail::verdicts_on_repeats(network, merged, result.verdicts, sigmas, gate);
+  return result;
+}
 
 }  // namespace
 
@@ -270,7 +284,9 @@ std::int64_t LocalizeResult::count(NodeStatus wanted) const {
 LocalizeResult localize(const RangeNetwork& network, const LocalizeOptions& options) {
   options.validate();
   const auto start = std::chrono::steady_clock::now();
-  auto result = Localization(network, options).run();
+  detail::check(network);
+  auto result = options.merge_repeats ? localize_merged(network, options)
+                                      : Localization(network, options).run();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

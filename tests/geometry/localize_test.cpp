@@ -12,40 +12,12 @@
 #include "isotherm/base/error.hpp"
 #include "isotherm/geometry/point_alignment.hpp"
 #include "isotherm/geometry/simulate_network.hpp"
+#include "localize/networks.hpp"
 
 namespace isotherm::geometry {
 namespace {
 
 using spectral::Verdict;
-
-/// Nodes at `truth` with exact ranges between the given pairs.
-RangeNetwork exact_network(const Eigen::MatrixXd& truth,
-                           const std::vector<std::pair<int, int>>& pairs,
-                           const std::vector<Index>& anchors = {}) {
-  RangeNetwork network;
-  network.dimension = static_cast<int>(truth.rows());
-  for (Eigen::Index v = 0; v < truth.cols(); ++v) network.names.push_back(std::to_string(v));
-  network.positions.setConstant(truth.rows(), truth.cols(),
-                                std::numeric_limits<double>::quiet_NaN());
-  network.landmarks = anchors;
-  for (const Index v : anchors) network.positions.col(v) = truth.col(v);
-  for (const auto& [a, b] : pairs) {
-    RangeMeasurement range;
-    range.from = a;
-    range.to = b;
-    range.distance = (truth.col(a) - truth.col(b)).norm();
-    network.ranges.push_back(range);
-  }
-  return network;
-}
-
-std::vector<std::pair<int, int>> all_pairs(const std::vector<int>& nodes) {
-  std::vector<std::pair<int, int>> pairs;
-  for (std::size_t a = 0; a < nodes.size(); ++a) {
-    for (std::size_t b = a + 1; b < nodes.size(); ++b) pairs.emplace_back(nodes[a], nodes[b]);
-  }
-  return pairs;
-}
 
 /// Seven points in general position.
 Eigen::MatrixXd seven_points() {
@@ -112,6 +84,66 @@ TEST(Localize, FindsFalseAndBiasedRanges) {
   EXPECT_LT(missed, 0.05 * wrong);
   EXPECT_LT(wrongly_pruned, 0.02 * static_cast<double>(simulated.origins.size()));
   EXPECT_LT(largest_error(result, simulated.truth), 0.1 * simulated.radius);
+}
+
+TEST(Localize, FalseRangesHardlyMoveTheNodes) {
+  const auto simulated =
+      simulate_network({.nodes = 100, .degree = 20.0, .false_fraction = 0.2, .seed = 1});
+  auto only_true = simulated.network;
+  only_true.ranges.clear();
+  for (std::size_t k = 0; k < simulated.origins.size(); ++k) {
+    if (simulated.origins[k] != RangeOrigin::measured) continue;
+    only_true.ranges.push_back(simulated.network.ranges[k]);
+  }
+  const auto result = localize(simulated.network);
+  const auto best = localize(only_true);
+  double ours = 0.0;
+  double theirs = 0.0;
+  int common = 0;
+  for (Index v = 0; v < simulated.network.node_count(); ++v) {
+    if (result.nodes[v] != NodeStatus::localised) continue;
+    const double error = (result.positions.col(v) - simulated.truth.col(v)).norm();
+    EXPECT_LT(error, 0.5 * simulated.radius) << v;
+    if (best.nodes[v] != NodeStatus::localised) continue;
+    ours += error * error;
+    theirs += (best.positions.col(v) - simulated.truth.col(v)).squaredNorm();
+    ++common;
+  }
+  EXPECT_GE(common, 80);
+  EXPECT_LT(std::sqrt(ours), 1.5 * std::sqrt(theirs));
+}
+
+TEST(Localize, WhatHangsOnTwoNodesIsMirrored) {
+  // Two complete graphs of five nodes share nodes 3 and 4; the anchors are in the first.
+  Eigen::MatrixXd truth(2, 8);
+  truth << 0, 4, 1, 5, 8.5, 9, 12, 7, 0, 0.5, 3, 4, 1, 5, 2.5, 7;
+  auto pairs = all_pairs({0, 1, 2, 3, 4});
+  const auto other = all_pairs({3, 4, 5, 6, 7});
+  pairs.insert(pairs.end(), other.begin() + 1, other.end());
+  const auto result = localize(exact_network(truth, pairs, {0, 1, 2}));
+  for (const int v : {3, 4}) EXPECT_EQ(result.nodes[v], NodeStatus::localised) << v;
+  for (const int v : {5, 6, 7}) EXPECT_EQ(result.nodes[v], NodeStatus::mirrored) << v;
+  EXPECT_LT(largest_error(result, truth), 1e-6);
+}
+
+TEST(Localize, RepeatsOfARangeCountOnce) {
+  const auto once = simulate_network({.nodes = 40, .degree = 25.0, .seed = 3}).network;
+  auto often = once;
+  for (int k = 0; k < 3; ++k) {
+    often.ranges.insert(often.ranges.end(), once.ranges.begin(), once.ranges.end());
+  }
+  const auto expected = localize(once);
+  const auto merged = localize(often);
+  const auto apart = localize(often, {.merge_repeats = false});
+  ASSERT_EQ(merged.nodes, expected.nodes);
+  EXPECT_EQ(merged.verdicts.size(), often.ranges.size());
+  for (Index v = 0; v < once.node_count(); ++v) {
+    if (expected.nodes[v] != NodeStatus::localised) continue;
+    EXPECT_EQ(merged.positions.col(v), expected.positions.col(v));
+    EXPECT_EQ(merged.covariances[v], expected.covariances[v]);
+    if (apart.nodes[v] != NodeStatus::localised) continue;
+    EXPECT_LT(apart.covariances[v].trace(), expected.covariances[v].trace());
+  }
 }
 
 TEST(Localize, ResultsDoNotDependOnTheThreads) {

@@ -143,10 +143,13 @@ std::optional<Multilateration> multilaterate(SmallNetwork network, double limit)
   const auto best =
       std::min_element(seeds.begin(), seeds.end(),
                        [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
-  Multilateration result{best->position, best->cost, std::numeric_limits<double>::infinity()};
+  Multilateration result{best->position, best->cost, best->position,
+                         std::numeric_limits<double>::infinity()};
   for (const auto& seed : seeds) {
     if ((seed.position - best->position).norm() < apart) continue;
-    result.rival_cost = std::min(result.rival_cost, seed.cost);
+    if (seed.cost >= result.rival_cost) continue;
+    result.rival = seed.position;
+    result.rival_cost = seed.cost;
   }
   return result;
 }

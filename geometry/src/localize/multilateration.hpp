@@ -12,9 +12,9 @@ namespace isotherm::geometry::detail {
 /// worse the next best is.
 struct Multilateration {
   Point position;
-  double cost = 0.0;  ///< sum of min(r^2, limit) over the ranges
-  /// Of the best place elsewhere; infinite if none was found.
-  double rival_cost = 0.0;
+  double cost = 0.0;        ///< sum of min(r^2, limit) over the ranges
+  Point rival;              ///< the best place elsewhere
+  double rival_cost = 0.0;  ///< infinite if there is none
 };
 
 /// Places the last node of `network`, all others being fixed and all ranges leading

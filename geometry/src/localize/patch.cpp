@@ -1,8 +1,6 @@
 #include "localize/patch.hpp"
 
 #include <algorithm>
-#include <map>
-#include <set>
 #include <utility>
 
 #include "isotherm/base/parallel.hpp"
@@ -15,7 +13,8 @@ namespace {
 constexpr double kWidth = 3.0;
 constexpr int kIterations = 30;
 
-// The trusted pairs among `members`, ends as places among them.
+}  // namespace
+
 std::vector<SmallRange> inner_ranges(const RangeProblem& problem, const std::vector<bool>& trusted,
                                      const std::vector<Index>& members) {
   std::vector<SmallRange> ranges;
@@ -31,6 +30,8 @@ std::vector<SmallRange> inner_ranges(const RangeProblem& problem, const std::vec
   }
   return ranges;
 }
+
+namespace {
 
 // Drops members with too few pairs inside until all have enough.
 void keep_rigid_core(const RangeProblem& problem, const std::vector<bool>& trusted,
@@ -78,33 +79,6 @@ std::vector<Index> closest_neighbours(const RangeProblem& problem, const std::ve
   return members;
 }
 
-// Adds the node with the most trusted pairs into the patch, again and again. One that a
-// false range leads to has no others, so that it stays outside.
-void grow(const RangeProblem& problem, const std::vector<bool>& trusted, int limit,
-          std::vector<Index>& members) {
-  constexpr int kClear = 2;    // times as many pairs as fix a place: chance does not bring these
-  std::map<Index, int> links;  // of nodes outside
-  const auto count_links = [&](Index member) {
-    for (const auto& [vertex, edge] : problem.pair_graph.neighbours(member)) {
-      if (trusted[edge]) ++links[vertex];
-    }
-  };
-  for (const Index member : members) count_links(member);
-  for (const Index member : members) links.erase(member);
-  std::set<Index> inside(members.begin(), members.end());
-  while (static_cast<int>(inside.size()) < limit) {
-    const auto best =
-        std::max_element(links.begin(), links.end(),
-                         [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (best == links.end() || best->second < kClear * (problem.dimension + 1)) break;
-    const Index added = best->first;
-    inside.insert(added);
-    count_links(added);
-    std::erase_if(links, [&](const auto& entry) { return inside.contains(entry.first); });
-  }
-  members.assign(inside.begin(), inside.end());
-}
-
 }  // namespace
 
 int Patch::find(Index node) const {
@@ -114,7 +88,7 @@ int Patch::find(Index node) const {
 }
 
 std::vector<Patch> make_patches(const RangeProblem& problem, const std::vector<bool>& trusted,
-                                PatchExtent extent, const LocalizeOptions& options) {
+                                const LocalizeOptions& options) {
   std::vector<Patch> patches(problem.nodes);
   if (problem.nodes <= options.patch_size) {
     std::vector<Index> all(problem.nodes);
@@ -130,8 +104,6 @@ std::vector<Patch> make_patches(const RangeProblem& problem, const std::vector<b
                  const auto centre = static_cast<Index>(index);
                  auto members = closest_neighbours(problem, trusted, centre, options.patch_size);
                  keep_rigid_core(problem, trusted, members);
-                 if (extent == PatchExtent::grown)
-                   grow(problem, trusted, options.patch_size, members);
                  auto patch = place(problem, trusted, std::move(members));
                  if (patch.find(centre) >= 0) patches[index] = std::move(patch);
                });

@@ -4,6 +4,7 @@
 
 #include "isotherm/geometry/localize.hpp"
 #include "localize/range_problem.hpp"
+#include "localize/small_network.hpp"
 
 namespace isotherm::geometry::detail {
 
@@ -17,10 +18,9 @@ struct Patch {
   int find(Index node) const;
 };
 
-enum class PatchExtent {
-  neighbours,  ///< of the central node only: hard to spoil by false ranges
-  grown,       ///< by the nodes best linked to these: harder to fold under noise
-};
+/// The trusted pairs among `members`, which ascend; ends are places among them.
+std::vector<SmallRange> inner_ranges(const RangeProblem& problem, const std::vector<bool>& trusted,
+                                     const std::vector<Index>& members);
 
 /// The patch of every node, made of the trusted pairs: the node with those of its
 /// neighbours that have at least d + 1 trusted pairs inside the patch (or one to every
@@ -28,6 +28,6 @@ enum class PatchExtent {
 /// of at most `options.patch_size` nodes is one patch, given to its first node. In
 /// parallel; the result does not depend on the threads.
 std::vector<Patch> make_patches(const RangeProblem& problem, const std::vector<bool>& trusted,
-                                PatchExtent extent, const LocalizeOptions& options);
+                                const LocalizeOptions& options);
 
 }  // namespace isotherm::geometry::detail

@@ -7,49 +7,14 @@
 
 #include "isotherm/base/parallel.hpp"
 #include "localize/multilateration.hpp"
+#include "localize/star.hpp"
 
 namespace isotherm::geometry::detail {
 namespace {
 
-// The node, last, with its placed neighbours and the pairs that lead to them.
-SmallNetwork star(const RangeProblem& problem, const Placement& placement, Index node) {
-  std::vector<Index> members;
-  SmallNetwork network;
-  for (const auto& [vertex, edge] : problem.pair_graph.neighbours(node)) {
-    if (!placement.placed[vertex]) continue;
-    const auto& pair = problem.pairs[edge];
-    network.ranges.push_back({static_cast<int>(members.size()), 0, pair.distance, pair.sigma});
-    members.push_back(vertex);
-  }
-  for (auto& range : network.ranges) range.to = static_cast<int>(members.size());
-  members.push_back(node);
-  network.positions = placement.positions(Eigen::all, members);
-  network.fixed = static_cast<int>(members.size()) - 1;
-  return network;
-}
-
-int agreeing(const SmallNetwork& network, double gate) {
-  return static_cast<int>(std::count_if(
-      network.ranges.begin(), network.ranges.end(),
-      [&](const SmallRange& range) { return std::pow(deviation(network, range), 2) <= gate; }));
-}
-
-// What multilateration found for the nodes that were asked about, in parallel.
-std::vector<std::optional<Multilateration>> multilaterate_all(const RangeProblem& problem,
-                                                              double limit,
-                                                              const LocalizeOptions& options,
-                                                              const Placement& placement,
-                                                              const std::vector<Index>& nodes) {
-  std::vector<std::optional<Multilateration>> found(nodes.size());
-  parallel_for(
-      static_cast<std::int64_t>(nodes.size()), options.threads, options.progress, "multilateration",
-      [&](std::int64_t k) { found[k] = multilaterate(star(problem, placement, nodes[k]), limit); });
-  return found;
-}
-
 bool try_to_place(const RangeProblem& problem, double gate, double limit, Index node,
                   Placement& placement) {
-  constexpr double kClear = 6.0;  // a first look; later ones ask for more
+  constexpr double kClear = 2.0;  // a first look; later ones ask for more
   auto network = star(problem, placement, node);
   if (network.fixed <= problem.dimension) return false;
   const auto found = multilaterate(network, limit);
@@ -80,18 +45,16 @@ std::vector<Index> next_to_place(const RangeProblem& problem, const Placement& p
 
 }  // namespace
 
-double outlier_cost(const RangeProblem& problem, const Placement& placement, double gate) {
+double outlier_cost(const RangeProblem& problem, const std::vector<bool>& usable,
+                    const Placement& placement, double gate) {
   constexpr double kLeast = 4.0;
   constexpr double kPeak = 0.3989;  // of the standard normal density
   double within = 0.5;
   double beyond = 0.5;
-  for (std::size_t k = 0; k < problem.ranges.size(); ++k) {
-    const auto& range = problem.ranges[k];
-    if (!placement.placed[range.from] || !placement.placed[range.to]) continue;
-    const double length =
-        (placement.positions.col(range.from) - placement.positions.col(range.to)).norm();
-    const double deviation = (length - range.distance) / problem.sigmas[k];
-    (deviation * deviation <= gate ? within : beyond) += 1.0;
+  for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
+    const auto& pair = problem.pairs[p];
+    if (!usable[p] || !is_placed(placement, pair)) continue;
+    (squared_deviation(placement, pair) <= gate ? within : beyond) += 1.0;
   }
   // A false range has any length up to about twice the usual one.
   const double span = 2.0 * problem.typical_distance / lower_median(problem.sigmas);
@@ -110,7 +73,8 @@ void place_more(const RangeProblem& problem, double gate, Placement& placement) 
 Index relocate(const RangeProblem& problem, double gate, const LocalizeOptions& options,
                Placement& placement) {
   constexpr double kGain = 2.0;  // of the cost, for which a move is worth it
-  const double limit = outlier_cost(problem, placement, gate);
+  const std::vector<bool> all(problem.pairs.size(), true);
+  const double limit = outlier_cost(problem, all, placement, gate);
   std::vector<Index> suspects;
   for (Index v = 0; v < problem.nodes; ++v) {
     if (!placement.placed[v] || problem.is_anchor[v]) continue;
@@ -118,7 +82,11 @@ Index relocate(const RangeProblem& problem, double gate, const LocalizeOptions& 
     const auto count = static_cast<int>(network.ranges.size());
     if (count > problem.dimension && agreeing(network, gate) < count) suspects.push_back(v);
   }
-  const auto found = multilaterate_all(problem, limit, options, placement, suspects);
+  std::vector<std::optional<Multilateration>> found(suspects.size());
+  parallel_for(static_cast<std::int64_t>(suspects.size()), options.threads, options.progress,
+               "multilateration", [&](std::int64_t k) {
+                 found[k] = multilaterate(star(problem, placement, suspects[k]), limit);
+               });
   Index moved = 0;
   for (std::size_t k = 0; k < suspects.size(); ++k) {
     if (!found[k]) continue;
@@ -131,25 +99,6 @@ Index relocate(const RangeProblem& problem, double gate, const LocalizeOptions& 
     ++moved;
   }
   return moved;
-}
-
-std::vector<bool> fits_elsewhere(const RangeProblem& problem, double gate,
-                                 const LocalizeOptions& options, const Placement& placement) {
-  std::vector<bool> result(problem.nodes, false);
-  // Without anchors a simplex may be mirrored as it is.
-  const auto placed = std::count(placement.placed.begin(), placement.placed.end(), true);
-  if (!problem.anchored() && placed <= problem.dimension + 1) return result;
-  std::vector<Index> nodes;
-  for (Index v = 0; v < problem.nodes; ++v) {
-    if (placement.placed[v] && !problem.is_anchor[v]) nodes.push_back(v);
-  }
-  const double clear = -2.0 * std::log(options.mirror_chance);
-  const double limit = outlier_cost(problem, placement, gate);
-  const auto found = multilaterate_all(problem, limit, options, placement, nodes);
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    result[nodes[k]] = found[k] && found[k]->rival_cost - found[k]->cost < clear;
-  }
-  return result;
 }
 
 }  // namespace isotherm::geometry::detail

@@ -8,10 +8,11 @@
 /// Moves of single nodes among their neighbours.
 namespace isotherm::geometry::detail {
 
-/// What a range that does not fit costs, in chi-squared, as the ranges between placed
-/// nodes have it: twice the log of how much likelier a fitting range is a correct one
+/// What a range that does not fit costs, in chi-squared, as the usable pairs between
+/// placed nodes have it: twice the log of how much likelier a fitting range is a correct one
 /// than a false one of any length. It rises as fewer ranges are found false.
-double outlier_cost(const RangeProblem& problem, const Placement& placement, double gate);
+double outlier_cost(const RangeProblem& problem, const std::vector<bool>& usable,
+                    const Placement& placement, double gate);
 
 /// Places nodes that have more than d ranges to placed ones that agree, as long as there
 /// are any, nodes with more ranges first. A place counts if the next best is clearly
@@ -22,10 +23,5 @@ void place_more(const RangeProblem& problem, double gate, Placement& placement);
 /// better. How many moved.
 Index relocate(const RangeProblem& problem, double gate, const LocalizeOptions& options,
                Placement& placement);
-
-/// Which placed nodes fit elsewhere nearly as well: the next best place is not less
-/// likely by the factor `options.mirror_chance`.
-std::vector<bool> fits_elsewhere(const RangeProblem& problem, double gate,
-                                 const LocalizeOptions& options, const Placement& placement);
 
 }  // namespace isotherm::geometry::detail

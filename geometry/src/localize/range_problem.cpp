@@ -18,34 +18,6 @@ namespace {
 // without one, until the residuals tell.
 constexpr double kProvisionalNoise = 0.05;
 
-void check(const RangeNetwork& network) {
-  const auto fail = [](std::size_t k, const std::string& problem) {
-    throw InvalidArgument("ranges[" + std::to_string(k) + "]", problem);
-  };
-  if (network.dimension != 2 && network.dimension != 3) {
-    throw InvalidArgument("dimension", "must be 2 or 3");
-  }
-  if (network.positions.size() > 0 && (network.positions.rows() != network.dimension ||
-                                       network.positions.cols() != network.node_count())) {
-    throw InvalidArgument("positions", "must be dimension x nodes");
-  }
-  const auto unknown = [&](Index v) { return v < 0 || v >= network.node_count(); };
-  for (std::size_t k = 0; k < network.ranges.size(); ++k) {
-    const auto& range = network.ranges[k];
-    if (unknown(range.from) || unknown(range.to)) fail(k, "joins a node that does not exist");
-    if (range.from == range.to) fail(k, "joins " + network.names[range.from] + " to itself");
-    if (!std::isfinite(range.distance) || range.distance < 0.0) {
-      fail(k, "distance must be finite and >= 0");
-    }
-    if (!std::isfinite(range.variance) || range.variance < 0.0) {
-      fail(k, "variance must be finite and >= 0");
-    }
-  }
-  for (const Index v : network.landmarks) {
-    if (unknown(v)) throw InvalidArgument("landmarks", "name a node that does not exist");
-  }
-}
-
 void merge_pairs(RangeProblem& problem) {
   std::map<std::pair<Index, Index>, Index> number_of;
   std::vector<std::vector<double>> distances;
@@ -75,6 +47,34 @@ void merge_pairs(RangeProblem& problem) {
 
 }  // namespace
 
+void check(const RangeNetwork& network) {
+  const auto fail = [](std::size_t k, const std::string& problem) {
+    throw InvalidArgument("ranges[" + std::to_string(k) + "]", problem);
+  };
+  if (network.dimension != 2 && network.dimension != 3) {
+    throw InvalidArgument("dimension", "must be 2 or 3");
+  }
+  if (network.positions.size() > 0 && (network.positions.rows() != network.dimension ||
+                                       network.positions.cols() != network.node_count())) {
+    throw InvalidArgument("positions", "must be dimension x nodes");
+  }
+  const auto unknown = [&](Index v) { return v < 0 || v >= network.node_count(); };
+  for (std::size_t k = 0; k < network.ranges.size(); ++k) {
+    const auto& range = network.ranges[k];
+    if (unknown(range.from) || unknown(range.to)) fail(k, "joins a node that does not exist");
+    if (range.from == range.to) fail(k, "joins " + network.names[range.from] + " to itself");
+    if (!std::isfinite(range.distance) || range.distance < 0.0) {
+      fail(k, "distance must be finite and >= 0");
+    }
+    if (!std::isfinite(range.variance) || range.variance < 0.0) {
+      fail(k, "variance must be finite and >= 0");
+    }
+  }
+  for (const Index v : network.landmarks) {
+    if (unknown(v)) throw InvalidArgument("landmarks", "name a node that does not exist");
+  }
+}
+
 bool RangeProblem::anchored() const {
   return std::find(is_anchor.begin(), is_anchor.end(), true) != is_anchor.end();
 }
@@ -86,8 +86,33 @@ double lower_median(std::vector<double> values) {
   return *middle;
 }
 
+Placement place_nodes(const RangeProblem& problem, const std::vector<Index>& nodes,
+                      const Eigen::MatrixXd& positions) {
+  Placement placement;
+  placement.positions.setZero(problem.dimension, problem.nodes);
+  placement.placed.assign(problem.nodes, false);
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    placement.placed[nodes[k]] = true;
+    placement.positions.col(nodes[k]) = positions.col(static_cast<Eigen::Index>(k));
+  }
+  return placement;
+}
+
+Index placed_count(const Placement& placement) {
+  return static_cast<Index>(std::count(placement.placed.begin(), placement.placed.end(), true));
+}
+
+bool is_placed(const Placement& placement, const RangePair& pair) {
+  return placement.placed[pair.from] && placement.placed[pair.to];
+}
+
+double squared_deviation(const Placement& placement, const RangePair& pair) {
+  const double length =
+      (placement.positions.col(pair.from) - placement.positions.col(pair.to)).norm();
+  return std::pow((length - pair.distance) / pair.sigma, 2);
+}
+
 RangeProblem make_problem(const RangeNetwork& network) {
-  check(network);
   RangeProblem problem;
   problem.dimension = network.dimension;
   problem.nodes = network.node_count();
@@ -121,19 +146,24 @@ Placement anchors_only(const RangeNetwork& network, const RangeProblem& problem)
   return placement;
 }
 
-bool anchors_span_space(const RangeProblem& problem, const Placement& placement) {
+bool span_space(const RangeProblem& problem, const Placement& placement,
+                const std::vector<Index>& nodes) {
   constexpr double kClear = 3.0;  // standard deviations of a range
-  constexpr double kFlat = 1e-9;  // of the anchors' extent: a line up to rounding
-  std::vector<Index> anchors;
-  for (Index v = 0; v < problem.nodes; ++v) {
-    if (problem.is_anchor[v] && placement.placed[v]) anchors.push_back(v);
-  }
-  if (static_cast<int>(anchors.size()) <= problem.dimension) return false;
-  const Eigen::MatrixXd points = placement.positions(Eigen::all, anchors);
+  constexpr double kFlat = 1e-9;  // of the nodes' extent: a line up to rounding
+  if (static_cast<int>(nodes.size()) <= problem.dimension) return false;
+  const Eigen::MatrixXd points = placement.positions(Eigen::all, nodes);
   const Eigen::MatrixXd centred = points.colwise() - points.rowwise().mean();
   const auto values = centred.jacobiSvd().singularValues();
   const double noise = problem.sigmas.empty() ? 0.0 : kClear * lower_median(problem.sigmas);
   return values.minCoeff() > std::max(noise, kFlat * values.maxCoeff());
+}
+
+bool anchors_span_space(const RangeProblem& problem, const Placement& placement) {
+  std::vector<Index> anchors;
+  for (Index v = 0; v < problem.nodes; ++v) {
+    if (problem.is_anchor[v] && placement.placed[v]) anchors.push_back(v);
+  }
+  return span_space(problem, placement, anchors);
 }
 
 }  // namespace isotherm::geometry::detail

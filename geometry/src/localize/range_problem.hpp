@@ -39,14 +39,34 @@ struct Placement {
   std::vector<bool> placed;
 };
 
+/// Some nodes at the columns of `positions`, nothing else.
+Placement place_nodes(const RangeProblem& problem, const std::vector<Index>& nodes,
+                      const Eigen::MatrixXd& positions);
+
+/// How many nodes have a place.
+Index placed_count(const Placement& placement);
+
+/// Whether both ends have one.
+bool is_placed(const Placement& placement, const RangePair& pair);
+
+/// Squared difference of a pair's distance from that of its places, by its variance.
+double squared_deviation(const Placement& placement, const RangePair& pair);
+
 /// @throws InvalidArgument as `localize` does
+void check(const RangeNetwork& network);
+
+/// The network must be valid.
 RangeProblem make_problem(const RangeNetwork& network);
 
 /// The anchors where they are, nothing else.
 Placement anchors_only(const RangeNetwork& network, const RangeProblem& problem);
 
-/// Whether the anchors, as far as `placement` has them, stand clear of every line (plane,
-/// in space), so that nothing can be mirrored: by more than the noise of the ranges.
+/// Whether nodes stand clear of every line (plane, in space), so that nothing on them can
+/// be mirrored: by more than the noise of the ranges.
+bool span_space(const RangeProblem& problem, const Placement& placement,
+                const std::vector<Index>& nodes);
+
+/// Whether the anchors, as far as `placement` has them, span space.
 bool anchors_span_space(const RangeProblem& problem, const Placement& placement);
 
 /// The middle one of `values` (the lower of two); NaN if there are none.

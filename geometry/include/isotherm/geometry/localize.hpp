@@ -50,9 +50,9 @@ struct LocalizeOptions {
   /// Probability with which a correct range may be called false; in (0, 1). The gate
   /// of the leave-one-out chi-squared test is the quantile of the rest.
   double significance = 1e-3;
-  /// A node counts as localised if its second-best place is less likely than its best
-  /// one by this factor; in (0, 1). The share of false ranges plays a part: the more
-  /// there are, the less does a single range prove.
+  /// A node, or a part of the network, counts as localised if its second-best place is
+  /// less likely than its best one by this factor; in (0, 1). The share of false ranges plays a
+  /// part: the more there are, the less does a single range prove.
   double mirror_chance = 1e-3;
   /// Leave out, at the start, ranges that the heat kernel finds suspicious. They are
   /// judged again once there are positions.
@@ -60,6 +60,9 @@ struct LocalizeOptions {
   /// That test leaves out a range that is less likely than this to be a true one; in
   /// (0, 1). Well below one half, since the later tests know more.
   double heat_chance = 0.1;
+  /// Ranges between the same two nodes count as one, their median: what makes one of them
+  /// wrong (multipath, antenna delays) they have in common. Otherwise each counts.
+  bool merge_repeats = true;
   /// Scale the standard deviations of the ranges by a common factor found from their
   /// residuals. Ranges without one always get theirs this way.
   bool estimate_noise = true;
@@ -83,6 +86,7 @@ void visit_fields(Options& options, Visitor&& visit) {
   visit("heat_pruning", options.heat_pruning,
         "let the heat kernel choose the ranges to start from");
   visit("heat_chance", options.heat_chance, "start without ranges less likely true than this");
+  visit("merge_repeats", options.merge_repeats, "take the median of ranges between two nodes");
   visit("estimate_noise", options.estimate_noise, "scale standard deviations by the residuals");
   visit("patch_size", options.patch_size, "most nodes of a local map");
   visit("max_iterations", options.max_iterations, "most iterations of a refinement");
@@ -123,13 +127,12 @@ struct LocalizeResult {
 /// Positions, covariances, and a verdict on every range.
 ///
 /// Heat-kernel pruning, local maps (shortest-path MDS) stitched by rotation
-/// synchronisation, robust refinement, leave-one-out tests, least squares on what is
-/// left: docs/concepts/localization.md. Landmarks of the network with a position are
-/// the anchors; they do not move. Without anchors the largest part is placed in a
-/// frame of its own, and covariances are those of the shape (minimal trace). With
-/// anchors in too small a number, or on one line (plane), nodes whose mirror image
-/// fits as well get that status and no position. Memory O(nodes + ranges) apart from
-/// the fill of a sparse factorisation.
+/// synchronisation or grown from cliques, robust refinement, leave-one-out tests, least
+/// squares on what is left: docs/concepts/localization.md. Landmarks of the network with a position
+/// are the anchors; they do not move. Without anchors the largest part is placed in a frame of its
+/// own, and covariances are those of the shape (minimal trace). With anchors in too small a number,
+/// or on one line (plane), nodes whose mirror image fits as well get that status and no position.
+/// Memory O(nodes + ranges) apart from the fill of a sparse factorisation.
 /// @throws InvalidArgument for options out of range, or a network with a range that
 ///   is negative, not finite, from a node to itself or to one that does not exist;
 ///   NumericalError, Cancelled.

@@ -1,0 +1,221 @@
+#include "localize/firmness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "isotherm/base/parallel.hpp"
+#include "localize/mirror_image.hpp"
+#include "localize/multilateration.hpp"
+#include "localize/placing.hpp"
+#include "localize/seeds.hpp"
+#include "localize/star.hpp"
+
+namespace isotherm::geometry::detail {
+namespace {
+
+using Nodes = std::vector<Index>;
+
+// Sets of firm nodes at the places they have.
+class Firmness {
+ public:
+  Firmness(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
+           const LocalizeOptions& options, const Placement& placement)
+      : problem_(problem),
+        trusted_(trusted),
+        gate_(gate),
+        options_(options),
+        placement_(placement),
+        limit_(outlier_cost(problem, trusted, placement, gate)),
+        clear_(-2.0 * std::log(options.mirror_chance)) {}
+
+  std::vector<bool> run() const {
+    // Without anchors a simplex may be mirrored as it is.
+    if (!problem_.anchored() && placed_count(placement_) <= problem_.dimension + 1) {
+      return placement_.placed;
+    }
+    auto bodies = find_bodies();
+    for (std::size_t base = 0; base < bodies.size(); ++base) absorb(bodies[base], bodies);
+    if (problem_.anchored()) {
+      auto frame = with(anchors());
+      auto firm = spread(frame, anchors());
+      absorb(firm, bodies);
+      return still_firm(firm);
+    }
+    const auto largest =
+        std::max_element(bodies.begin(), bodies.end(),
+                         [](const Nodes& a, const Nodes& b) { return a.size() < b.size(); });
+    return largest == bodies.end() ? none().placed : still_firm(*largest);
+  }
+
+ private:
+  Nodes anchors() const {
+    Nodes nodes;
+    for (Index v = 0; v < problem_.nodes; ++v) {
+      if (problem_.is_anchor[v]) nodes.push_back(v);
+    }
+    return nodes;
+  }
+
+  Placement none() const {
+    return {placement_.positions, std::vector<bool>(placement_.placed.size(), false)};
+  }
+
+  Placement with(const Nodes& body) const {
+    auto placement = none();
+    for (const Index v : body) placement.placed[v] = true;
+    return placement;
+  }
+
+  // Without the nodes that have two places among all the others, now that these are known.
+  std::vector<bool> still_firm(const Nodes& body) const {
+    const auto firm = with(body);
+    auto result = firm.placed;
+    for (const Index v : body) {
+      if (!problem_.is_anchor[v]) result[v] = has_one_place(firm, v);
+    }
+    return result;
+  }
+
+  // Adds to one body those of `others` that are fixed to it, and what they bring, as long
+  // as there are any; these become empty.
+  void absorb(Nodes& body, std::vector<Nodes>& others) const {
+    if (body.empty()) return;
+    auto firm = with(body);
+    for (bool any = true; any;) {
+      any = false;
+      for (auto& other : others) {
+        if (&other == &body || other.empty() || !is_fixed(other, firm)) continue;
+        Nodes fresh;
+        for (const Index v : other) {
+          if (!firm.placed[v]) fresh.push_back(v);
+          firm.placed[v] = true;
+        }
+        const auto added = spread(firm, std::move(fresh));
+        body.insert(body.end(), added.begin(), added.end());
+        other.clear();
+        any = true;
+      }
+    }
+  }
+
+  // Whether a body has one place among firm nodes: no mirror image fits nearly as well.
+  bool is_fixed(const Nodes& body, const Placement& firm) const {
+    const auto inside = with(body);
+    std::vector<Tie> ties;
+    const double sigma = lower_median(problem_.sigmas);
+    const int d = problem_.dimension;
+    for (const Index v : body) {
+      if (firm.placed[v]) {
+        // The place of an anchor cannot be at fault, only the ranges that tie it to the body.
+        const double limit = (problem_.is_anchor[v] ? d + 1 : 1) * limit_;
+        ties.push_back(
+            {placement_.positions.col(v), placement_.positions.col(v), 0.0, sigma, limit});
+        continue;
+      }
+      for (const auto& [vertex, edge] : problem_.pair_graph.neighbours(v)) {
+        if (!trusted_[edge] || !firm.placed[vertex] || inside.placed[vertex]) continue;
+        const auto& pair = problem_.pairs[edge];
+        ties.push_back({placement_.positions.col(v), placement_.positions.col(vertex),
+                        pair.distance, pair.sigma, limit_});
+      }
+    }
+    return holds(ties);
+  }
+
+  bool holds(const std::vector<Tie>& ties) const {
+    const int d = problem_.dimension;
+    int held = 0;  // coordinates, as far as ranges agree
+    double cost = 0.0;
+    for (const auto& tie : ties) {
+      cost += tie.cost();
+      if (tie.cost() <= std::min(gate_, 0.999 * tie.limit)) held += tie.distance == 0.0 ? d : 1;
+    }
+    if (held <= d * (d + 1) / 2 + 1) return false;
+    return mirror_image_cost(ties) - cost >= clear_;
+  }
+
+  // What can be reached from each clique, the largest first.
+  std::vector<Nodes> find_bodies() const {
+    std::vector<Nodes> bodies;
+    std::vector<bool> covered(problem_.nodes, false);
+    for (const auto& seed : consistent_cliques(problem_, agreeing_pairs(), gate_, options_)) {
+      const bool known = std::all_of(seed.members.begin(), seed.members.end(),
+                                     [&](Index v) { return covered[v]; });
+      if (known) continue;
+      auto firm = with(seed.members);
+      bodies.push_back(spread(firm, seed.members));
+      for (const Index v : bodies.back()) covered[v] = true;
+    }
+    std::stable_sort(bodies.begin(), bodies.end(),
+                     [](const Nodes& a, const Nodes& b) { return a.size() > b.size(); });
+    return bodies;
+  }
+
+  std::vector<bool> agreeing_pairs() const {
+    std::vector<bool> agree(problem_.pairs.size(), false);
+    for (std::size_t p = 0; p < agree.size(); ++p) {
+      const auto& pair = problem_.pairs[p];
+      agree[p] = trusted_[p] && is_placed(placement_, pair) &&
+                 squared_deviation(placement_, pair) <= gate_;
+    }
+    return agree;
+  }
+
+  // Adds the nodes that are firm thanks to those in `firm`, of which `fresh` are new, and
+  // so on. All of them.
+  Nodes spread(Placement& firm, Nodes fresh) const {
+    Nodes all = fresh;
+    while (!fresh.empty()) {
+      Nodes near;
+      for (const Index v : fresh) {
+        for (const auto& [vertex, edge] : problem_.pair_graph.neighbours(v)) {
+          if (trusted_[edge] && placement_.placed[vertex] && !firm.placed[vertex])
+            near.push_back(vertex);
+        }
+      }
+      std::sort(near.begin(), near.end());
+      near.erase(std::unique(near.begin(), near.end()), near.end());
+      std::vector<char> has_one(near.size(), 0);
+      parallel_for(static_cast<std::int64_t>(near.size()), options_.threads, options_.progress,
+                   "determinacy",
+                   [&](std::int64_t k) { has_one[k] = has_one_place(firm, near[k]) ? 1 : 0; });
+      fresh.clear();
+      for (std::size_t k = 0; k < near.size(); ++k) {
+        if (has_one[k] != 0) fresh.push_back(near[k]);
+      }
+      for (const Index v : fresh) firm.placed[v] = true;
+      all.insert(all.end(), fresh.begin(), fresh.end());
+    }
+    return all;
+  }
+
+  // Whether the node's place among the firm ones is clearly the best.
+  bool has_one_place(const Placement& firm, Index node) const {
+    auto network = star(problem_, firm, node, trusted_);
+    if (network.fixed <= problem_.dimension) return false;
+    const auto found = multilaterate(network, limit_);
+    if (!found || found->rival_cost - found->cost < clear_) return false;
+    network.positions.col(network.fixed) = placement_.positions.col(node);
+    return 2 * agreeing(network, gate_) > static_cast<int>(network.ranges.size()) &&
+           truncated_cost(network, limit_) - found->cost < 0.5 * clear_;
+  }
+
+  const RangeProblem& problem_;
+  const std::vector<bool>& trusted_;
+  double gate_;
+  const LocalizeOptions& options_;
+  const Placement& placement_;
+  double limit_;
+  double clear_;
+};
+
+}  // namespace
+
+std::vector<bool> firm_nodes(const RangeProblem& problem, const std::vector<bool>& trusted,
+                             double gate, const LocalizeOptions& options,
+                             const Placement& placement) {
+  return Firmness(problem, trusted, gate, options, placement).run();
+}
+
+}  // namespace isotherm::geometry::detail

@@ -1,0 +1,55 @@
+#include "localize/mirror_image.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <Eigen/SVD>
+
+#include "isotherm/base/random.hpp"
+
+namespace isotherm::geometry::detail {
+namespace {
+
+Tie shared_point(const Point& point) { return {point, point, 0.0, 1.0, 1e6}; }
+
+/// Least sum of squares of an improper rotation and a translation, by the singular values
+/// of the covariance (Kabsch, with the sign of the determinant turned).
+double improper_procrustes(const Eigen::MatrixXd& points) {
+  const Eigen::MatrixXd centred = points.colwise() - points.rowwise().mean();
+  const auto values = (centred * centred.transpose()).jacobiSvd().singularValues();
+  return 2.0 * values.sum() - 2.0 * (values.sum() - 2.0 * values.minCoeff());
+}
+
+TEST(MirrorImage, OfSharedPointsIsTheBestImproperRotation) {
+  Random random(4);
+  for (const int d : {2, 3}) {
+    Eigen::MatrixXd points(d, 4);
+    for (auto& value : points.reshaped()) value = random.uniform(-3.0, 3.0);
+    std::vector<Tie> ties;
+    for (const auto& point : points.colwise()) ties.push_back(shared_point(point));
+    EXPECT_NEAR(mirror_image_cost(ties), improper_procrustes(points), 1e-4) << d;
+  }
+}
+
+TEST(MirrorImage, CostsNothingOnAHinge) {
+  const std::vector<Tie> hinge = {shared_point(Eigen::Vector2d(0, 0)),
+                                  shared_point(Eigen::Vector2d(2, 1))};
+  EXPECT_NEAR(mirror_image_cost(hinge), 0.0, 1e-12);
+}
+
+TEST(MirrorImage, ARangeAcrossTheHingeSpeaksAgainstIt) {
+  // The body hangs on two points of the x axis; its third point, above, has a range to
+  // one below. Mirrored it would be 2 instead of 4 away.
+  std::vector<Tie> ties = {shared_point(Eigen::Vector2d(-5, 0)),
+                           shared_point(Eigen::Vector2d(5, 0))};
+  ties.push_back({Eigen::Vector2d(0, 3), Eigen::Vector2d(0, -1), 4.0, 0.1, 50.0});
+  EXPECT_DOUBLE_EQ(ties.back().cost(), 0.0);
+  const double cost = mirror_image_cost(ties);
+  EXPECT_GT(cost, 2.0);   // shifting the hinge by 2 costs 2 * 1 each
+  EXPECT_LE(cost, 50.0);  // giving up the range
+}
+
+TEST(MirrorImage, WithoutEnoughTiesIsImpossible) { EXPECT_TRUE(std::isinf(mirror_image_cost({}))); }
+
+}  // namespace
+}  // namespace isotherm::geometry::detail
