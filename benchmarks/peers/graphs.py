@@ -41,7 +41,9 @@ class Graphs:
                 file.write(",".join([repr((k + 1) * 11393 / 1140), *pose]) + "\n")
         stamps.write_text("".join(f"{vertex}\n" for vertex in range(11393)), encoding="utf-8")
         truth = (positions, "--timestamps", stamps)
-        labels = self.labelled("Bovisa04", graph, truth, "--max-translation-error", "5")
+        # Labelled by translation alone, as for the peers' figures: 105 wrong of 197.
+        labels = self.labelled("Bovisa04", graph, truth, "--max-translation-error", "5",
+                               "--max-rotation-error", "3.15")
         return LabelledGraph("Bovisa04", graph, labels, (*truth, "--max-gap", "0.5"))
 
     def injected(self):

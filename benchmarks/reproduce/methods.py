@@ -9,7 +9,7 @@ HEAT = ("--method", "heat", "--preset", "datta2016")
 KONST = (0, 1, 2, 3, 4)  # the paper's range
 PRUNING = {
     "SC": ("--method", "sc"),
-    "RRR": ("--method", "rrr"),
+    "RRR": ("--method", "rrr", "--initialization", "odometry", "--no-rrr-split"),  # the paper's
     "heat (paper)": HEAT,
     "consensus": ("--method", "consensus"),
 }

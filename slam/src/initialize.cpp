@@ -7,6 +7,8 @@
 #include "block_cholesky.hpp"
 #include "gauge.hpp"
 #include "isotherm/base/error.hpp"
+#include "isotherm/slam/robust_kernel.hpp"
+#include "robust_minimize.hpp"
 
 namespace isotherm::slam {
 namespace {
@@ -232,6 +234,8 @@ std::vector<Pose> initial_poses(const PoseGraph<Pose>& graph, const EdgeRoles& r
       return graph.poses;
     case Initialization::chordal:
       return chordal_poses(graph, follow_tree(graph, preferred));
+    case Initialization::switchable:
+      return switchable_poses(graph, roles, default_kernel_width(RobustKernel::sc, Pose::kDof));
     case Initialization::automatic:
     case Initialization::odometry:
     case Initialization::spanning_tree:
@@ -240,9 +244,24 @@ std::vector<Pose> initial_poses(const PoseGraph<Pose>& graph, const EdgeRoles& r
   return follow_tree(graph, preferred);
 }
 
+template <class Pose>
+std::vector<Pose> switchable_poses(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                                   double width) {
+  std::vector<bool> robust(graph.constraints.size(), false);
+  for (const Index k : roles.candidates) robust[k] = true;
+  const auto odometry = initial_poses(graph, roles, Initialization::odometry);
+  auto poses = odometry;
+  NormalEquations<Pose> equations(graph);
+  Eigen::VectorXd weights;
+  const auto summary = minimize_switchable(equations, robust, width, {}, poses, weights);
+  return summary.status == OptimizeStatus::diverged ? odometry : poses;
+}
+
 template std::vector<Pose2> initial_poses(const PoseGraph<Pose2>&, const EdgeRoles&,
                                           Initialization);
 template std::vector<Pose3> initial_poses(const PoseGraph<Pose3>&, const EdgeRoles&,
                                           Initialization);
+template std::vector<Pose2> switchable_poses(const PoseGraph<Pose2>&, const EdgeRoles&, double);
+template std::vector<Pose3> switchable_poses(const PoseGraph<Pose3>&, const EdgeRoles&, double);
 
 }  // namespace isotherm::slam

@@ -8,6 +8,9 @@ namespace {
 
 constexpr double kMuStep = 1.4;
 constexpr int kMostRounds = 200;
+// Convexity for more than a chi-squared of 10^4 widths gives false loops a hold on
+// the first rounds and true ones nothing.
+constexpr double kLeastMu = 1e-4;
 
 // The surrogate of one loss at one degree of convexity mu.
 struct Surrogate {
@@ -17,7 +20,8 @@ struct Surrogate {
 
   // Convex enough for the largest chi-squared: remarks 5 and 6.
   void start(double largest) {
-    mu = truncated ? width / (2.0 * largest - width) : 2.0 * largest / width;
+    const double ratio = std::min(largest / width, 0.5 / kLeastMu);
+    mu = truncated ? 1.0 / (2.0 * ratio - 1.0) : 2.0 * ratio;
   }
 
   // The original loss is reached, or nothing exceeds the width in the first place.
@@ -45,6 +49,17 @@ double largest_of(const Eigen::VectorXd& chi2, const std::vector<bool>& robust) 
   return largest;
 }
 
+// The loss itself, which the surrogates end at.
+double loss(const Eigen::VectorXd& chi2, const std::vector<bool>& robust, double width,
+            bool truncated) {
+  const RobustKernel kernel = truncated ? RobustKernel::gnc : RobustKernel::gnc_gm;
+  double sum = 0.0;
+  for (Index k = 0; k < chi2.size(); ++k) {
+    sum += robust[k] ? evaluate_kernel(kernel, width, chi2[k]).cost : chi2[k];
+  }
+  return sum;
+}
+
 }  // namespace
 
 template <class Pose>
@@ -56,17 +71,13 @@ MinimizeSummary minimize_graduated(NormalEquations<Pose>& equations,
   const EdgeCost edge_cost = [&](Index k, double chi2) {
     return KernelValue{weights[k] * chi2, weights[k]};
   };
-  // The surrogate must be convex enough both for the start, where loops disagree
-  // most, and for the optimum with all of them.
   const std::vector<Pose> start = poses;
-  const double at_start = largest_of(equations.chi2(start), robust);
-  MinimizeSummary total = minimize(equations, edge_cost, options, poses);
-  Eigen::VectorXd chi2 = equations.chi2(poses);
-  const double with_all = largest_of(chi2, robust);
-  if (with_all <= width) return total;
-
+  Eigen::VectorXd chi2 = equations.chi2(start);
+  MinimizeSummary total;
+  total.initial_cost = loss(chi2, robust, width, truncated);
+  total.status = OptimizeStatus::iteration_limit;
   Surrogate surrogate{truncated, width, 0.0};
-  surrogate.start(std::max(at_start, with_all));
+  surrogate.start(std::max(largest_of(chi2, robust), width));
   for (int round = 0; round < kMostRounds; ++round) {
     for (Index k = 0; k < chi2.size(); ++k) {
       if (robust[k]) weights[k] = surrogate.weight(chi2[k]);
@@ -75,12 +86,13 @@ MinimizeSummary minimize_graduated(NormalEquations<Pose>& equations,
     const auto summary = minimize(equations, edge_cost, options, poses);
     chi2 = equations.chi2(poses);
     total.iterations += summary.iterations;
-    total.final_cost = summary.final_cost;
-    total.status = summary.status;
-    if (surrogate.done(weights)) return total;
+    if (surrogate.done(weights)) {
+      total.status = summary.status;
+      break;
+    }
     surrogate.sharpen();
   }
-  total.status = OptimizeStatus::iteration_limit;
+  total.final_cost = loss(chi2, robust, width, truncated);
   return total;
 }
 

@@ -16,6 +16,18 @@ void require_positive(const char* field, double value) {
   }
 }
 
+Initialization default_start(RobustKernel kernel) {
+  switch (kernel) {
+    case RobustKernel::none:
+      return Initialization::spanning_tree;
+    case RobustKernel::gnc:
+    case RobustKernel::gnc_gm:
+      return Initialization::switchable;
+    default:
+      return Initialization::odometry;
+  }
+}
+
 bool levels_off(RobustKernel kernel) {
   return kernel == RobustKernel::cauchy || kernel == RobustKernel::dcs ||
          kernel == RobustKernel::sc;
@@ -31,8 +43,7 @@ OptimizeOptions resolve(OptimizeOptions options, int dof) {
                                                    : OptimizeAlgorithm::levenberg_marquardt;
   }
   if (options.initialization == Initialization::automatic) {
-    options.initialization = options.kernel == RobustKernel::none ? Initialization::spanning_tree
-                                                                  : Initialization::odometry;
+    options.initialization = default_start(options.kernel);
   }
   return options;
 }

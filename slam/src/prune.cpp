@@ -110,8 +110,11 @@ PruneResult prune_by_kernel(const PoseGraph<Pose>& graph, const EdgeRoles& roles
   const RobustKernel kernel = kernel_of(options.method);
   const double width =
       options.kernel_width > 0.0 ? options.kernel_width : default_kernel_width(kernel, Pose::kDof);
-  const auto optimized = optimize(
-      graph, roles, {.kernel = kernel, .kernel_width = width, .progress = options.progress});
+  const auto optimized = optimize(graph, roles,
+                                  {.kernel = kernel,
+                                   .kernel_width = width,
+                                   .initialization = options.initialization,
+                                   .progress = options.progress});
   const double threshold = kernel_threshold(kernel, width);
   PruneResult result;
   result.verdicts = candidate_verdicts(graph, roles);
@@ -130,8 +133,10 @@ PruneResult prune_by_kernel(const PoseGraph<Pose>& graph, const EdgeRoles& roles
 template <class Pose>
 PruneResult prune_by_rrr(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                          const PruneOptions& options) {
+  RrrOptions own = options.rrr;
+  own.initialization = options.initialization;
   PruneResult result;
-  result.verdicts = rrr(graph, roles, options.rrr, options.progress);
+  result.verdicts = rrr(graph, roles, own, options.progress);
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "isotherm/slam/odometry.hpp"
 #include "minimize.hpp"
 
 namespace isotherm::slam {
@@ -23,12 +24,20 @@ MinimizeSummary minimize_switchable(NormalEquations<Pose>& equations,
 /// Graduated non-convexity (Yang et al. 2020): truncated least squares, or
 /// Geman-McClure with `truncated` false, over the constraints in `robust`; the
 /// others keep weight 1. The surrogate's mu changes by a factor of 1.4 a round
-/// (the paper's). Every round starts from the given poses: where all loops, false
-/// ones included, have bent the map is a poor place to start from.
+/// (the paper's), from what is convex enough for the largest chi-squared at the given
+/// poses or for 5,000 widths. Every round starts from the given poses: where false
+/// loops have bent the map is a poor place to start from.
 template <class Pose>
 MinimizeSummary minimize_graduated(NormalEquations<Pose>& equations,
                                    const std::vector<bool>& robust, double width, bool truncated,
                                    const MinimizeOptions& options, std::vector<Pose>& poses,
                                    Eigen::VectorXd& weights);
+
+/// The optimum of switchable constraints of the given width over the candidates, from
+/// odometry; odometry where that diverges.
+/// @throws InvalidArgument as initial_poses()
+template <class Pose>
+std::vector<Pose> switchable_poses(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                                   double width);
 
 }  // namespace isotherm::slam

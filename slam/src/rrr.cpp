@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <numeric>
 
 #include <Eigen/Cholesky>
@@ -13,7 +14,7 @@
 #include "isotherm/slam/information.hpp"
 #include "isotherm/slam/initialize.hpp"
 #include "isotherm/slam/odometry.hpp"
-#include "minimize.hpp"
+#include "robust_minimize.hpp"
 
 namespace isotherm::slam {
 namespace {
@@ -42,22 +43,39 @@ class Rrr {
         progress_(progress),
         odometry_(graph, roles),
         loop_limit_(chi_squared_quantile(options.rrr_confidence, Pose::kDof)),
-        verdicts_(candidate_verdicts(graph, roles)) {
+        verdicts_(candidate_verdicts(graph, roles)),
+        accepted_(roles.candidates.size(), false),
+        start_(start()),
+        poses_(start_) {
     for (auto& verdict : verdicts_) verdict.threshold = loop_limit_;
   }
 
   EdgeVerdicts run() && {
-    std::vector<Cluster> clusters;
-    for (const Cluster& cluster : cluster_loops(graph_, roles_, options_.rrr_cluster_gap)) {
-      Cluster consistent = within_cluster(cluster);
-      if (!consistent.empty()) clusters.push_back(std::move(consistent));
-      report(clusters.size());
-    }
-    between_clusters(clusters);
+    const auto clusters = cluster_loops(graph_, roles_, options_.rrr_cluster_gap);
+    if (options_.rrr_split) grow(consistent(fitting_parts(clusters)));
+    grow(consistent(clusters));
+    if (options_.rrr_split) grow(single_loops());
+    for (std::size_t k = 0; k < accepted_.size(); ++k) decide(static_cast<Index>(k));
     return std::move(verdicts_);
   }
 
  private:
+  static Initialization start_of(const RrrOptions& options) {
+    return options.initialization == Initialization::automatic ? Initialization::switchable
+                                                               : options.initialization;
+  }
+
+  // A switch falls below one half where a loop fails its test.
+  std::vector<Pose> start() const {
+    const Initialization method = start_of(options_);
+    return method == Initialization::switchable ? switchable_poses(graph_, roles_, loop_limit_)
+                                                : initial_poses(graph_, roles_, method);
+  }
+
+  // Whether the start knows more than odometry. If not, it is chained anew for every
+  // optimisation: parts that odometry does not join hang on the loops that are in.
+  bool informed() const { return start_of(options_) != Initialization::odometry; }
+
   const Constraint<Pose>& loop(Index candidate) const {
     return graph_.constraints[roles_.candidates[candidate]];
   }
@@ -98,7 +116,10 @@ class Rrr {
     std::sort(ends.begin(), ends.end());
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
     PoseGraph<Pose> small;
-    for (const Index end : ends) small.ids.push_back(graph_.ids[end]);
+    for (const Index end : ends) {
+      small.ids.push_back(graph_.ids[end]);
+      small.poses.push_back(start_[end]);
+    }
     for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
       if (odometry_.chain(ends[k]) != odometry_.chain(ends[k + 1])) continue;
       const auto path = odometry_.relative(ends[k], ends[k + 1]);
@@ -122,10 +143,22 @@ class Rrr {
     return small;
   }
 
+  // What of every cluster agrees within it.
+  std::vector<Cluster> consistent(const std::vector<Cluster>& clusters) {
+    std::vector<Cluster> parts;
+    for (const Cluster& cluster : clusters) {
+      Cluster part = within_cluster(cluster);
+      if (!part.empty()) parts.push_back(std::move(part));
+      report(parts.size());
+    }
+    return parts;
+  }
+
   // Algorithm 2 of the paper: the loops of a cluster that agree.
   Cluster within_cluster(const Cluster& cluster) {
     const PoseGraph<Pose> small = contract(cluster);
-    auto poses = initial_poses(small, edge_roles(small), Initialization::odometry);
+    auto poses = initial_poses(small, edge_roles(small),
+                               informed() ? Initialization::file : Initialization::odometry);
     const Eigen::VectorXd chi2 = optimised_chi2(small, poses);
     const Consistency whole = test(chi2.sum(), roles_.odometry.size() + cluster.size());
     const Index first = small.constraint_count() - static_cast<Index>(cluster.size());
@@ -143,107 +176,141 @@ class Rrr {
     return consistent;
   }
 
-  // The whole graph with odometry and the loops of the given clusters; chi-squared
-  // of those loops in order, and the sum over everything at the end.
-  std::vector<double> chi2_with(const std::vector<const Cluster*>& clusters) {
+  // The whole graph with odometry and the given loops: leaves the estimate in
+  // poses_; chi-squared by constraint, zero for the others.
+  std::vector<double> chi2_with(const std::vector<bool>& loops) {
     std::vector<bool> keep(graph_.constraints.size(), false);
     for (const Index k : roles_.odometry) keep[k] = true;
-    std::size_t loops = 0;
-    for (const Cluster* cluster : clusters) {
-      for (const Index candidate : *cluster) keep[roles_.candidates[candidate]] = true;
-      loops += cluster->size();
-    }
+    for (std::size_t c = 0; c < loops.size(); ++c) keep[roles_.candidates[c]] = loops[c];
     const PoseGraph<Pose> part = filter_constraints(graph_, keep);
-    poses_ = initial_poses(part, edge_roles(part), Initialization::odometry);
+    poses_ = informed() ? start_ : initial_poses(part, edge_roles(part), Initialization::odometry);
     const Eigen::VectorXd chi2 = optimised_chi2(part, poses_);
     std::vector<double> by_constraint(graph_.constraints.size(), 0.0);
     Index at = 0;
     for (std::size_t k = 0; k < keep.size(); ++k) {
       if (keep[k]) by_constraint[k] = chi2[at++];
     }
-    report(loops);
+    report(static_cast<std::size_t>(std::count(loops.begin(), loops.end(), true)));
     return by_constraint;
   }
 
-  double sum_over(const Cluster& cluster, const std::vector<double>& chi2) const {
+  Consistency test(const Cluster& cluster, const std::vector<double>& chi2) const {
     double sum = 0.0;
     for (const Index candidate : cluster) sum += chi2[roles_.candidates[candidate]];
-    return sum;
+    return test(sum, cluster.size());
   }
 
-  Consistency whole_graph(const std::vector<const Cluster*>& clusters,
-                          const std::vector<double>& chi2) const {
-    std::size_t constraints = roles_.odometry.size();
-    for (const Cluster* cluster : clusters) constraints += cluster->size();
-    return test(std::accumulate(chi2.begin(), chi2.end(), 0.0), constraints);
+  Consistency whole_graph(const std::vector<bool>& loops, const std::vector<double>& chi2) const {
+    const auto accepted = std::count(loops.begin(), loops.end(), true);
+    return test(std::accumulate(chi2.begin(), chi2.end(), 0.0),
+                roles_.odometry.size() + static_cast<std::size_t>(accepted));
   }
 
-  // Algorithm 3: the largest part of `tried` that agrees with `good` and itself,
-  // found by putting back the most inconsistent cluster, one at a time.
-  std::vector<std::size_t> agree(const std::vector<Cluster>& clusters,
-                                 const std::vector<std::size_t>& good,
-                                 std::vector<std::size_t> tried) {
+  // Algorithm 3: the largest part of `tried` that agrees with what is accepted and
+  // itself, found by putting back the most inconsistent cluster, one at a time.
+  std::vector<const Cluster*> agree(std::vector<const Cluster*> tried) {
     while (!tried.empty()) {
-      std::vector<const Cluster*> together;
-      for (const std::size_t c : good) together.push_back(&clusters[c]);
-      for (const std::size_t c : tried) together.push_back(&clusters[c]);
+      std::vector<bool> together = accepted_;
+      for (const Cluster* cluster : tried) {
+        for (const Index candidate : *cluster) together[candidate] = true;
+      }
       const auto chi2 = chi2_with(together);
-      const auto consistency = [&](std::size_t c) {
-        return test(sum_over(clusters[c], chi2), clusters[c].size());
-      };
       const auto worst =
-          std::max_element(tried.begin(), tried.end(), [&](std::size_t a, std::size_t b) {
-            return consistency(a).ratio() < consistency(b).ratio();
+          std::max_element(tried.begin(), tried.end(), [&](const Cluster* a, const Cluster* b) {
+            return test(*a, chi2).ratio() < test(*b, chi2).ratio();
           });
-      const Consistency why = consistency(*worst);
+      const Consistency why = test(**worst, chi2);
       if (why.holds() && whole_graph(together, chi2).holds()) return tried;
-      for (const Index candidate : clusters[*worst]) last_test(candidate, why);
+      for (const Index candidate : **worst) last_test(candidate, why);
       tried.erase(worst);
     }
     return {};
   }
 
   void last_test(Index candidate, const Consistency& why) {
+    if (accepted_[candidate]) return;
     verdicts_[candidate].score = why.chi2;
     verdicts_[candidate].threshold = why.limit;
+    verdicts_[candidate].stage = "inter-cluster";
   }
 
-  // Algorithm 4.
-  void between_clusters(const std::vector<Cluster>& clusters) {
-    std::vector<std::size_t> good;
-    std::vector<bool> is_good(clusters.size(), false);
+  // Algorithm 4: accepts what agrees of `clusters`, until nothing is added.
+  void grow(const std::vector<Cluster>& clusters) {
     std::vector<bool> rejected(clusters.size(), false);
     while (true) {
-      std::vector<const Cluster*> accepted;
-      for (const std::size_t c : good) accepted.push_back(&clusters[c]);
-      chi2_with(accepted);  // leaves the estimate in poses_
-      std::vector<std::size_t> tried;
-      for (std::size_t c = 0; c < clusters.size(); ++c) {
-        if (!is_good[c] && !rejected[c] && any_loop_fits(clusters[c])) tried.push_back(c);
+      estimate();
+      std::vector<const Cluster*> tried = candidates(clusters, rejected);
+      if (tried.empty()) return;
+      const auto agreed = agree(tried);
+      for (const Cluster* cluster : agreed) {
+        for (const Index candidate : *cluster) accepted_[candidate] = true;
       }
-      // Drift can hide every loop from odometry alone: then all get their chance.
-      if (tried.empty() && good.empty()) tried = not_rejected(rejected);
-      if (tried.empty()) break;
-      const auto agreed = agree(clusters, good, tried);
       if (agreed.empty()) {
-        for (const std::size_t c : tried) rejected[c] = true;
-        continue;
+        for (const Cluster* cluster : tried) rejected[cluster - clusters.data()] = true;
+      } else {
+        rejected.assign(clusters.size(), false);
       }
-      for (const std::size_t c : agreed) is_good[c] = true;
-      good.insert(good.end(), agreed.begin(), agreed.end());
-      rejected.assign(clusters.size(), false);
-    }
-    for (std::size_t c = 0; c < clusters.size(); ++c) {
-      for (const Index candidate : clusters[c]) decide(candidate, is_good[c]);
     }
   }
 
-  static std::vector<std::size_t> not_rejected(const std::vector<bool>& rejected) {
-    std::vector<std::size_t> rest;
-    for (std::size_t c = 0; c < rejected.size(); ++c) {
-      if (!rejected[c]) rest.push_back(c);
+  // Poses from odometry and what is accepted; until something is, the start if it
+  // knows more.
+  void estimate() {
+    if (any_accepted() || !informed()) {
+      chi2_with(accepted_);
+    } else {
+      poses_ = start_;
     }
-    return rest;
+  }
+
+  bool any_accepted() const {
+    return std::find(accepted_.begin(), accepted_.end(), true) != accepted_.end();
+  }
+
+  // Clusters to be decided that fit the estimate. Drift can hide every loop from
+  // odometry: then all get their chance.
+  std::vector<const Cluster*> candidates(const std::vector<Cluster>& clusters,
+                                         const std::vector<bool>& rejected) const {
+    const auto undecided = [this](Index k) { return !accepted_[k]; };
+    std::vector<const Cluster*> open;
+    std::vector<const Cluster*> fitting;
+    for (std::size_t c = 0; c < clusters.size(); ++c) {
+      if (rejected[c] || std::ranges::none_of(clusters[c], undecided)) continue;
+      open.push_back(&clusters[c]);
+      if (fits_estimate(clusters[c])) fitting.push_back(&clusters[c]);
+    }
+    return fitting.empty() && !any_accepted() && !informed() ? open : fitting;
+  }
+
+  // A loop that is not accepted yet fits, or all loops do together.
+  bool fits_estimate(const Cluster& cluster) const {
+    double sum = 0.0;
+    for (const Index candidate : cluster) {
+      if (!accepted_[candidate] && fits_estimate(candidate)) return true;
+      sum += chi2_at_estimate(candidate);
+    }
+    return test(sum, cluster.size()).holds();
+  }
+
+  // Of every cluster the loops that fit the start.
+  std::vector<Cluster> fitting_parts(const std::vector<Cluster>& clusters) const {
+    std::vector<Cluster> parts;
+    for (const Cluster& cluster : clusters) {
+      Cluster part;
+      std::ranges::copy_if(cluster, std::back_inserter(part),
+                           [this](Index k) { return fits_estimate(k); });
+      if (!part.empty()) parts.push_back(std::move(part));
+    }
+    return parts;
+  }
+
+  // Every loop that is not accepted, for itself.
+  std::vector<Cluster> single_loops() const {
+    std::vector<Cluster> singles;
+    for (std::size_t k = 0; k < accepted_.size(); ++k) {
+      if (!accepted_[k]) singles.push_back({static_cast<Index>(k)});
+    }
+    return singles;
   }
 
   double chi2_at_estimate(Index candidate) const {
@@ -252,20 +319,17 @@ class Rrr {
     return r.dot(constraint.information * r);
   }
 
-  bool any_loop_fits(const Cluster& cluster) const {
-    return std::any_of(cluster.begin(), cluster.end(), [this](Index candidate) {
-      return chi2_at_estimate(candidate) < loop_limit_;
-    });
-  }
+  bool fits_estimate(Index candidate) const { return chi2_at_estimate(candidate) < loop_limit_; }
 
-  void decide(Index candidate, bool good) {
+  void decide(Index candidate) {
     auto& verdict = verdicts_[candidate];
-    verdict.stage = "inter-cluster";
-    verdict.verdict = good ? Verdict::keep : Verdict::prune;
+    const bool kept = accepted_[candidate];
     const bool tested = verdict.score > verdict.threshold;
-    if (good || !tested) {
+    verdict.verdict = kept ? Verdict::keep : Verdict::prune;
+    if (kept || verdict.stage.empty()) verdict.stage = "inter-cluster";
+    if (kept || !tested) {
       verdict.score = chi2_at_estimate(candidate);
-      verdict.threshold = good ? std::max(loop_limit_, verdict.score) : loop_limit_;
+      verdict.threshold = kept ? std::max(loop_limit_, verdict.score) : loop_limit_;
     }
   }
 
@@ -276,7 +340,9 @@ class Rrr {
   OdometryChain<Pose> odometry_;
   double loop_limit_;
   EdgeVerdicts verdicts_;
-  std::vector<Pose> poses_;
+  std::vector<bool> accepted_;  // one a candidate
+  std::vector<Pose> start_;
+  std::vector<Pose> poses_;  // the estimate
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 
 #include "isotherm/base/error.hpp"
+#include "isotherm/slam/optimize.hpp"
 #include "loop_graph.hpp"
 
 namespace isotherm::slam {
@@ -30,7 +31,7 @@ using Poses = testing::Types<Pose2, Pose3>;
 TYPED_TEST_SUITE(Initialize, Poses);
 
 constexpr Initialization kComputed[] = {Initialization::odometry, Initialization::spanning_tree,
-                                        Initialization::chordal};
+                                        Initialization::chordal, Initialization::switchable};
 
 TYPED_TEST(Initialize, IsExactWithoutNoise) {
   using Pose = TypeParam;
@@ -63,6 +64,15 @@ TYPED_TEST(Initialize, OdometryIsNotBentByAFalseLoop) {
   EXPECT_LT(worst_difference(poses, truth), 1e-9);
 }
 
+TYPED_TEST(Initialize, SwitchableIsThatOptimumFromOdometry) {
+  using Pose = TypeParam;
+  auto [graph, truth] = random_loop_graph<Pose>(this->random, 30, 12, 0.1);
+  graph.constraints.back().T_from_to = Pose();  // a false loop
+  const auto optimum = optimize(graph, {.kernel = RobustKernel::sc, .cost_tolerance = 1e-6});
+  const auto poses = initial_poses(graph, edge_roles(graph), Initialization::switchable);
+  EXPECT_LT(worst_difference(poses, optimum.poses), 1e-9);
+}
+
 TYPED_TEST(Initialize, ComponentsAndLonelyVerticesStayWhereTheyWere) {
   using Pose = TypeParam;
   auto [graph, truth] = random_loop_graph<Pose>(this->random, 20, 0, 0.0);
@@ -88,8 +98,9 @@ TYPED_TEST(Initialize, FromTheFile) {
 }
 
 TYPED_TEST(Initialize, EmptyGraph) {
-  for (const auto method : {Initialization::odometry, Initialization::spanning_tree,
-                            Initialization::chordal, Initialization::file}) {
+  for (const auto method :
+       {Initialization::odometry, Initialization::spanning_tree, Initialization::chordal,
+        Initialization::file, Initialization::switchable}) {
     EXPECT_TRUE(initial_poses(PoseGraph<TypeParam>(), {}, method).empty());
   }
 }

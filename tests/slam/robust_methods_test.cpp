@@ -74,6 +74,43 @@ TYPED_TEST(RobustMethods, FindTheFalseLoops) {
   }
 }
 
+TYPED_TEST(RobustMethods, LoopsPartFromTheirCluster) {
+  // One cluster of true and false loops: as a whole it fails, loop by loop it does not.
+  const auto made = poisoned_graph<TypeParam>(this->random, 60, 40, 15);
+  const auto roles = edge_roles(made.graph);
+  ASSERT_EQ(cluster_loops(made.graph, roles, 50).size(), 1u);
+  const auto split = rrr(made.graph, roles, {.rrr_cluster_gap = 50});
+  for (const auto& verdict : split) {
+    EXPECT_EQ(verdict.verdict == Verdict::prune, verdict.edge >= made.first_false) << verdict.edge;
+  }
+  const auto whole = rrr(made.graph, roles, {.rrr_cluster_gap = 50, .rrr_split = false});
+  EXPECT_LT(count(whole, Verdict::keep), 20);
+}
+
+TYPED_TEST(RobustMethods, StartWhereTheyAreTold) {
+  using Pose = TypeParam;
+  auto made = poisoned_graph<Pose>(this->random, 40, 30, 10);
+  const auto roles = edge_roles(made.graph);
+  for (const auto method : kMethods) {
+    const PruneOptions from_file{.method = method, .initialization = Initialization::file};
+    if (method == PruneMethod::pcm) continue;  // optimises nothing
+    made.graph.poses.clear();
+    EXPECT_THROW(prune(made.graph, roles, from_file), InvalidArgument) << enum_name(method);
+    made.graph.poses = initial_poses(made.graph, roles, Initialization::odometry);
+    const auto result = prune(made.graph, roles, from_file);
+    EXPECT_EQ(result.verdicts.size(), roles.candidates.size()) << enum_name(method);
+  }
+  // The scores are those of an optimisation from there.
+  const auto verdicts =
+      prune(made.graph, roles, {.method = PruneMethod::dcs, .initialization = Initialization::file})
+          .verdicts;
+  const auto optimum =
+      optimize(made.graph, {.kernel = RobustKernel::dcs, .initialization = Initialization::file});
+  for (const auto& verdict : verdicts) {
+    EXPECT_DOUBLE_EQ(verdict.score, optimum.chi2[verdict.edge]);
+  }
+}
+
 TYPED_TEST(RobustMethods, KeepAGraphWithoutNoise) {
   const auto made = random_loop_graph<TypeParam>(this->random, 40, 30, 0.0);
   const auto roles = edge_roles(made.graph);
@@ -130,6 +167,13 @@ TYPED_TEST(RobustMethods, GraduatedWeightsEndAtTheOriginalLoss) {
     EXPECT_EQ(truncated.weight[k] < 0.5, k >= made.first_false);
     EXPECT_TRUE(truncated.weight[k] < 1e-3 || truncated.weight[k] > 1 - 1e-3);
   }
+  double loss = 0.0;
+  for (const Index k : edge_roles(made.graph).odometry) loss += truncated.chi2[k];
+  for (const Index k : edge_roles(made.graph).candidates) {
+    loss += std::min(truncated.chi2[k], default_kernel_width(RobustKernel::gnc, TypeParam::kDof));
+  }
+  EXPECT_NEAR(truncated.final_cost, loss, 1e-9 * loss);
+  EXPECT_LT(truncated.final_cost, truncated.initial_cost);
   const auto smooth = optimize(made.graph, {.kernel = RobustKernel::gnc_gm});
   for (const Index k : edge_roles(made.graph).candidates) {
     EXPECT_EQ(smooth.weight[k] < 0.5, k >= made.first_false);

@@ -37,7 +37,7 @@ struct OptimizeOptions {
   /// Apply the kernel to odometry too. The robust methods trust odometry.
   bool kernel_on_odometry = false;
   /// The spanning tree starts closest on clean graphs; against false loops use
-  /// odometry, which no false loop can bend.
+  /// odometry, which no false loop can bend, or switchable.
   Initialization initialization = Initialization::automatic;
   OptimizeAlgorithm algorithm = OptimizeAlgorithm::automatic;
   int max_iterations = 100;  ///< accepted and rejected steps, >= 0

@@ -10,6 +10,7 @@
 #include "isotherm/base/progress.hpp"
 #include "isotherm/slam/consensus.hpp"
 #include "isotherm/slam/heat_prune.hpp"
+#include "isotherm/slam/initialize.hpp"
 #include "isotherm/slam/pcm.hpp"
 #include "isotherm/slam/pose_graph.hpp"
 #include "isotherm/slam/rrr.hpp"
@@ -57,6 +58,8 @@ struct PruneOptions {
   PcmOptions pcm;
   /// Width of the kernel of sc, dcs, cauchy and gnc; 0: default_kernel_width().
   double kernel_width = 0.0;
+  /// Where rrr, sc, dcs, cauchy and gnc start optimising.
+  Initialization initialization = Initialization::automatic;
   /// Method lap_line, which compares curves by heat.induction.curve: the score
   /// above which a loop is pruned; in [0, 1].
   double curve_threshold = 0.5;
@@ -80,6 +83,8 @@ void visit_fields(Options& options, Visitor&& visit) {
   visit_fields(options.pcm, visit);
   visit("kernel_width", options.kernel_width,
         "width of the kernel (sc, dcs, cauchy, gnc); 0: its own default");
+  visit("initialization", options.initialization,
+        "where optimisation starts (rrr, sc, dcs, cauchy, gnc)");
   visit("curve_threshold", options.curve_threshold,
         "lap-line: score of the paths above which a loop is pruned");
 }

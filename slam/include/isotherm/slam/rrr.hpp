@@ -6,6 +6,7 @@
 
 #include "isotherm/base/options.hpp"
 #include "isotherm/base/progress.hpp"
+#include "isotherm/slam/initialize.hpp"
 #include "isotherm/slam/pose_graph.hpp"
 #include "isotherm/spectral/edge_verdicts.hpp"
 
@@ -22,6 +23,13 @@ struct RrrOptions {
   /// Gauss-Newton steps an optimisation may take. The authors' default of 4 is too
   /// few in space; > 0.
   int rrr_iterations = 20;
+  /// Let loops part from their cluster: those that fit the start are tried first, and
+  /// at the end those of rejected clusters one by one. False: clusters stand or fall
+  /// as a whole, as in the paper.
+  bool rrr_split = true;
+  /// Where every optimisation starts. automatic: switchable, with the quantile of a
+  /// loop for the width. The paper's is odometry.
+  Initialization initialization = Initialization::automatic;
 
   void validate() const;
 };
@@ -33,6 +41,7 @@ void visit_fields(Options& options, Visitor&& visit) {
         "poses between loops of one cluster, at both ends (rrr)");
   visit("rrr_confidence", options.rrr_confidence, "probability of the chi-squared tests (rrr)");
   visit("rrr_iterations", options.rrr_iterations, "steps an optimisation may take (rrr)");
+  visit("rrr_split", options.rrr_split, "let loops part from their cluster (rrr)");
 }
 
 /// Clusters of candidates (positions in roles.candidates) whose two ends are close,
@@ -53,7 +62,10 @@ std::vector<std::vector<Index>> cluster_loops(const PoseGraph<Pose>& graph, cons
 /// pass among many good ones.)
 ///
 /// A round tries the clusters with a loop that fits the current estimate; where
-/// drift lets none fit odometry, the first round tries all.
+/// drift lets none fit odometry, the first round tries all. With `rrr_split` this is
+/// done three times: for the loops of each cluster that fit the start, for whole
+/// clusters, and for the loops that are left, one by one. The paper has the second
+/// only, where one false loop takes its cluster with it.
 /// The score is chi-squared where the loop was decided, the threshold its quantile;
 /// a loop rejected with its cluster gets the cluster's chi-squared and quantile.
 /// @throws InvalidArgument, Cancelled
