@@ -1,14 +1,12 @@
 #include "isotherm/slam/rrr.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <iterator>
 #include <numeric>
 
 #include <Eigen/Cholesky>
 
 #include "candidate_verdicts.hpp"
-#include "find_root.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/statistics.hpp"
 #include "isotherm/slam/information.hpp"
@@ -356,51 +354,6 @@ void RrrOptions::validate() const {
 }
 
 template <class Pose>
-std::vector<std::vector<Index>> cluster_loops(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                                              int gap) {
-  const auto count = static_cast<Index>(roles.candidates.size());
-  struct Ends {
-    Index low;
-    Index high;
-  };
-  std::vector<Ends> ends;
-  for (const Index k : roles.candidates) {
-    const auto& constraint = graph.constraints[k];
-    ends.push_back(
-        {std::min(constraint.from, constraint.to), std::max(constraint.from, constraint.to)});
-  }
-  std::vector<Index> by_low(static_cast<std::size_t>(count));
-  std::iota(by_low.begin(), by_low.end(), 0);
-  std::sort(by_low.begin(), by_low.end(), [&](Index a, Index b) {
-    return std::pair(ends[a].low, a) < std::pair(ends[b].low, b);
-  });
-  std::vector<Index> parent(static_cast<std::size_t>(count));
-  std::iota(parent.begin(), parent.end(), 0);
-  for (std::size_t a = 0; a < by_low.size(); ++a) {
-    for (std::size_t b = a + 1; b < by_low.size(); ++b) {
-      const Ends& first = ends[by_low[a]];
-      const Ends& second = ends[by_low[b]];
-      if (second.low - first.low > gap) break;
-      if (std::abs(second.high - first.high) > gap) continue;
-      const Index x = find_root(parent, by_low[a]);
-      const Index y = find_root(parent, by_low[b]);
-      parent[std::max(x, y)] = std::min(x, y);
-    }
-  }
-  std::vector<std::vector<Index>> clusters;
-  std::vector<Index> cluster_of(static_cast<std::size_t>(count), -1);
-  for (Index c = 0; c < count; ++c) {
-    Index& cluster = cluster_of[find_root(parent, c)];
-    if (cluster < 0) {
-      cluster = static_cast<Index>(clusters.size());
-      clusters.emplace_back();
-    }
-    clusters[cluster].push_back(c);
-  }
-  return clusters;
-}
-
-template <class Pose>
 EdgeVerdicts rrr(const PoseGraph<Pose>& graph, const EdgeRoles& roles, const RrrOptions& options,
                  const ProgressCallback& progress) {
   options.validate();
@@ -408,10 +361,6 @@ EdgeVerdicts rrr(const PoseGraph<Pose>& graph, const EdgeRoles& roles, const Rrr
   return Rrr<Pose>(prepared.graph, roles, options, progress).run();
 }
 
-template std::vector<std::vector<Index>> cluster_loops(const PoseGraph<Pose2>&, const EdgeRoles&,
-                                                       int);
-template std::vector<std::vector<Index>> cluster_loops(const PoseGraph<Pose3>&, const EdgeRoles&,
-                                                       int);
 template EdgeVerdicts rrr(const PoseGraph<Pose2>&, const EdgeRoles&, const RrrOptions&,
                           const ProgressCallback&);
 template EdgeVerdicts rrr(const PoseGraph<Pose3>&, const EdgeRoles&, const RrrOptions&,
