@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "../block_covariance.hpp"
 #include "../find_root.hpp"
@@ -45,6 +46,12 @@ void Estimate<Pose>::update(const std::vector<bool>& accepted, const CovarianceS
     // The Newton decrement is the squared length of the step in deviations.
     if (decrement < kSettled * kSettled * static_cast<double>(1 + active_loops_.size())) return;
   }
+}
+
+template <class Pose>
+void Estimate<Pose>::restore(Layout layout) {
+  poses_ = std::move(layout.poses);
+  component_ = std::move(layout.component);
 }
 
 template <class Pose>

@@ -35,6 +35,16 @@ class Estimate {
 
   const std::vector<Pose>& poses() const noexcept { return poses_; }
 
+  /// Where the poses are, without the factor there.
+  struct Layout {
+    std::vector<Pose> poses;
+    std::vector<Index> component;
+  };
+  Layout layout() const { return {poses_, component_}; }
+
+  /// Takes poses back to where they were; update() must follow.
+  void restore(Layout layout);
+
   /// log(T_measured^-1 T_a^-1 T_b).
   Tangent residual(const Link<Pose>& link) const;
 

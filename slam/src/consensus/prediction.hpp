@@ -23,6 +23,13 @@ template <class Pose>
 double fitted_chi2(const Link<Pose>& loop, const typename Pose::Tangent& r,
                    const typename Pose::Matrix& C, double loop_scale);
 
+/// How an accepted loop, whose own measurement C includes, compares with the prediction
+/// of all others.
+template <class Pose>
+Evidence weigh_held_out(const Link<Pose>& loop, const typename Pose::Tangent& r,
+                        const typename Pose::Matrix& C, double loop_scale,
+                        const MapVolume<Pose>& map);
+
 /// C once the loop itself is accepted: C - C (C + Sigma)^-1 C.
 template <class Pose>
 typename Pose::Matrix sharpened(const Link<Pose>& loop, const typename Pose::Tangent& r,

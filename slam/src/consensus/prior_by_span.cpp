@@ -1,5 +1,6 @@
 #include "prior_by_span.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -30,10 +31,11 @@ PriorBySpan::PriorBySpan(std::span<const Decision> decided) {
     classes[class_of(decision.span)].add(decision.kept);
   }
   fraction_ = all.kept / all.decided;
+  const double odds = fraction_ / (1.0 - fraction_);
   for (std::size_t k = 0; k < kClasses; ++k) {
     const double kept = classes[k].kept + kLean * fraction_;
     const double refuted = classes[k].decided - classes[k].kept + kLean * (1.0 - fraction_);
-    log_odds_[k] = std::log(kept / refuted);
+    log_odds_[k] = std::log(std::max(kept / refuted, odds));
   }
 }
 

@@ -15,7 +15,8 @@ using spectral::Index;
 /// Where false loops join places at random and true ones mostly join neighbours, a short
 /// loop is very likely true. Spans are told apart by their power of two; a class with
 /// few decided loops leans on the fraction of all (a Beta prior), which itself starts
-/// at one half.
+/// at one half. No class has less than the odds of all: false loops are found out before
+/// true ones are proven, and least is proven at first of those that span much.
 class PriorBySpan {
  public:
   /// How a loop was decided.

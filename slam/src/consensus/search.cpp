@@ -21,7 +21,8 @@ constexpr int kStepsPerRound = 6;     // of Gauss-Newton
 constexpr int kMostDrops = 3;         // a loop dropped so often is not tried again
 constexpr int kCalibrations = 6;      // of the covariance scales, on proven loops
 constexpr int kLastCalibrations = 2;  // and with the likely ones
-constexpr int kMostDoublings = 4;     // of odometry's covariance, where it refutes every loop
+constexpr int kReconsiderations = 3;
+constexpr int kMostDoublings = 4;  // of odometry's covariance, where it refutes every loop
 // An accepted loop is dropped beyond twice the deviations that an average one would
 // need to meet the gate: real errors have heavy tails, and where it was accepted it had
 // evidence of its own.
@@ -54,6 +55,7 @@ void Search<Pose>::run(ConsensusResult& result) {
   accept_and_calibrate(kCalibrations);
   take_likely_ = true;
   accept_and_calibrate(kLastCalibrations);
+  for (int k = 0; k < kReconsiderations && reconsider();) ++k;
   report(result);
 }
 
@@ -224,7 +226,8 @@ typename Search<Pose>::Selection Search<Pose>::in_question() const {
   Selection loops;
   for (std::size_t k = 0; k < states_.size(); ++k) {
     const auto& state = states_[k];
-    if (!accepted_[k] && state.drops < kMostDrops && inside_gate(static_cast<Index>(k))) {
+    if (!accepted_[k] && !state.on_trial && state.drops < kMostDrops &&
+        inside_gate(static_cast<Index>(k))) {
       loops.push_back(static_cast<Index>(k));
     }
   }
@@ -274,7 +277,7 @@ void Search<Pose>::accept(const Batch& batch) {
   }
   ConsensusRound summary;
   summary.accepted = static_cast<std::int64_t>(batch.loops.size());
-  summary.in_force = std::count(accepted_.begin(), accepted_.end(), true);
+  summary.in_force = accepted_count();
   summary.rule = batch.rule;
   rounds_.push_back(summary);
 }
@@ -283,8 +286,7 @@ void Search<Pose>::accept(const Batch& batch) {
 template <class Pose>
 void Search<Pose>::tell_progress() const {
   if (!options_.progress) return;
-  const auto done =
-      static_cast<std::uint64_t>(std::count(accepted_.begin(), accepted_.end(), true));
+  const auto done = static_cast<std::uint64_t>(accepted_count());
   if (!options_.progress({"consensus", done, states_.size()})) throw Cancelled();
 }
 

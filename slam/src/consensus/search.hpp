@@ -34,6 +34,7 @@ class Search {
   struct State {
     bool accepted = false;
     bool connected = false;
+    bool on_trial = false;  // may only be accepted once nothing else can
     int round = 0;
     int drops = 0;
     // Of T_a^-1 T_b as predicted by the other accepted loops, or for an accepted loop
@@ -47,6 +48,21 @@ class Search {
     std::string rule;
     Selection loops;
   };
+
+  /// What a search can be taken back to.
+  struct Snapshot {
+    std::vector<State> states;
+    std::vector<bool> accepted;
+    std::size_t rounds = 0;
+    typename Estimate<Pose>::Layout layout;
+  };
+
+  bool reconsider();
+  Selection held_by_themselves();
+  std::size_t freed_without(const Selection& loops);
+  Snapshot snapshot() const;
+  void restore(Snapshot before);
+  std::int64_t accepted_count() const;
 
   void accept_and_calibrate(int most_calibrations);
   bool odometry_refutes_all() const;
