@@ -63,7 +63,7 @@ template <class Pose>
 void Search<Pose>::accept_and_calibrate(int most_calibrations) {
   accept_while_possible();
   if (!options_.calibrate) return;
-  for (int k = 0; k < kMostDoublings && odometry_refutes_all(); ++k) {
+  for (int k = 0; k < kMostDoublings && odometry_leaves_none(); ++k) {
     calibration_.double_odometry();
     judge_anew();
     accept_while_possible();
@@ -71,13 +71,16 @@ void Search<Pose>::accept_and_calibrate(int most_calibrations) {
   for (int k = 0; k < most_calibrations && calibrate(); ++k) accept_while_possible();
 }
 
-// One statement of accuracy stands against all loops: it is doubted first.
+// One statement of accuracy stands against all loops: it is doubted first. At the end
+// it is doubted as well where it leaves none likely.
 template <class Pose>
-bool Search<Pose>::odometry_refutes_all() const {
+bool Search<Pose>::odometry_leaves_none() const {
+  bool any_connected = false;
   for (std::size_t k = 0; k < states_.size(); ++k) {
-    if (!refuted(static_cast<Index>(k))) return false;
+    if (accepted_[k] || (!take_likely_ && inside_gate(static_cast<Index>(k)))) return false;
+    any_connected = any_connected || states_[k].connected;
   }
-  return true;
+  return any_connected;
 }
 
 template <class Pose>

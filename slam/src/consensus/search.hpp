@@ -65,7 +65,7 @@ class Search {
   std::int64_t accepted_count() const;
 
   void accept_and_calibrate(int most_calibrations);
-  bool odometry_refutes_all() const;
+  bool odometry_leaves_none() const;
   void accept_while_possible();
   bool accept_next_batch();
   bool readmit();

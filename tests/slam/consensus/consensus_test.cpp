@@ -301,8 +301,9 @@ TEST(Consensus, OptionsAreChecked) {
 
 // The sums of distances are those of the files: nothing true is lost on clean data.
 TEST(Consensus, KeepsRealCleanGraphs) {
-  for (const std::string name : {"MIT/MIT", "CSAIL/CSAIL", "intel/intel"}) {
-    ISOTHERM_REAL_DATA_OR_SKIP(path, "posegraph2d/" + name + ".g2o");
+  for (const std::string name : {"posegraph2d/MIT/MIT", "posegraph2d/CSAIL/CSAIL",
+                                 "posegraph2d/intel/intel", "paper/kitti/kitti_09"}) {
+    ISOTHERM_REAL_DATA_OR_SKIP(path, name + ".g2o");
     const auto file = read_pose_graph(path.string());
     const auto& graph = std::get<PoseGraph<Pose2>>(file.graph);
     const auto result = consensus(graph, edge_roles(graph));
