@@ -101,7 +101,8 @@ class Firmness {
 
   // Whether a body has one place among firm nodes: no mirror image fits nearly as well.
   bool is_fixed(const Nodes& body, const Placement& firm) const {
-    const auto inside = with(body);
+    auto inside = body;
+    std::sort(inside.begin(), inside.end());
     std::vector<Tie> ties;
     const double sigma = lower_median(problem_.sigmas);
     const int d = problem_.dimension;
@@ -114,7 +115,8 @@ class Firmness {
         continue;
       }
       for (const auto& [vertex, edge] : problem_.pair_graph.neighbours(v)) {
-        if (!trusted_[edge] || !firm.placed[vertex] || inside.placed[vertex]) continue;
+        if (!trusted_[edge] || !firm.placed[vertex]) continue;
+        if (std::binary_search(inside.begin(), inside.end(), vertex)) continue;
         const auto& pair = problem_.pairs[edge];
         ties.push_back({placement_.positions.col(v), placement_.positions.col(vertex),
                         pair.distance, pair.sigma, limit_});

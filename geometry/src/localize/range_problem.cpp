@@ -146,14 +146,17 @@ Placement anchors_only(const RangeNetwork& network, const RangeProblem& problem)
   return placement;
 }
 
+Eigen::VectorXd extents(const Eigen::MatrixXd& points) {
+  const Eigen::MatrixXd centred = points.colwise() - points.rowwise().mean();
+  return centred.jacobiSvd().singularValues();
+}
+
 bool span_space(const RangeProblem& problem, const Placement& placement,
                 const std::vector<Index>& nodes) {
   constexpr double kClear = 3.0;  // standard deviations of a range
   constexpr double kFlat = 1e-9;  // of the nodes' extent: a line up to rounding
   if (static_cast<int>(nodes.size()) <= problem.dimension) return false;
-  const Eigen::MatrixXd points = placement.positions(Eigen::all, nodes);
-  const Eigen::MatrixXd centred = points.colwise() - points.rowwise().mean();
-  const auto values = centred.jacobiSvd().singularValues();
+  const Eigen::VectorXd values = extents(placement.positions(Eigen::all, nodes));
   const double noise = problem.sigmas.empty() ? 0.0 : kClear * lower_median(problem.sigmas);
   return values.minCoeff() > std::max(noise, kFlat * values.maxCoeff());
 }

@@ -61,6 +61,9 @@ RangeProblem make_problem(const RangeNetwork& network);
 /// The anchors where they are, nothing else.
 Placement anchors_only(const RangeNetwork& network, const RangeProblem& problem);
 
+/// Singular values of the columns about their mean, falling.
+Eigen::VectorXd extents(const Eigen::MatrixXd& points);
+
 /// Whether nodes stand clear of every line (plane, in space), so that nothing on them can
 /// be mirrored: by more than the noise of the ranges.
 bool span_space(const RangeProblem& problem, const Placement& placement,

@@ -5,8 +5,6 @@
 #include <iterator>
 #include <utility>
 
-#include <Eigen/SVD>
-
 #include "isotherm/base/parallel.hpp"
 #include "localize/small_network.hpp"
 
@@ -52,14 +50,12 @@ std::vector<Index> greedy_clique(const Adjacency& neighbours, Index start, std::
   return members;
 }
 
-// Whether the points stand clear of every line (plane, in space) by the noise.
+// Whether the points lie on a line (plane, in space) but for the noise.
 bool is_flat(const SmallNetwork& network) {
   constexpr double kClear = 3.0;  // standard deviations
   std::vector<double> sigmas;
   for (const auto& range : network.ranges) sigmas.push_back(range.sigma);
-  const auto& points = network.positions;
-  const Eigen::MatrixXd centred = points.colwise() - points.rowwise().mean();
-  return centred.jacobiSvd().singularValues().minCoeff() <= kClear * lower_median(sigmas);
+  return extents(network.positions).minCoeff() <= kClear * lower_median(sigmas);
 }
 
 void remove_member(SmallNetwork& network, std::vector<Index>& members, int gone) {
