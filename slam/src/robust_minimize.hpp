@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "isotherm/slam/odometry.hpp"
 #include "minimize.hpp"
 
 namespace isotherm::slam {
