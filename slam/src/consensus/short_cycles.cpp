@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kQuantile = 0.2;
 constexpr std::size_t kFewestCycles = 50;
+// Loops that were copied along odometry close to rounding, and say nothing of accuracy.
+constexpr double kRounding = 1e-8;
 
 }  // namespace
 
@@ -27,6 +29,7 @@ std::vector<double> cycle_chi2(const ReducedGraph<Pose>& graph,
 }
 
 double cycle_scale(std::vector<double> chi2, int dof) {
+  std::erase_if(chi2, [](double x) { return x < kRounding; });
   if (chi2.size() < kFewestCycles) return 1.0;
   const auto at =
       chi2.begin() + static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(chi2.size()));

@@ -17,7 +17,8 @@ std::vector<double> cycle_chi2(const ReducedGraph<Pose>& graph,
 /// or 1 if there are too few to tell. `chi2` of `dof` degrees of freedom is that of each.
 ///
 /// Matches a low quantile: the cycles of false loops miss by far, and make the answer
-/// larger, but hardly smaller.
+/// larger, but hardly smaller. Cycles that close to rounding are left out: one of their
+/// loops is a copy of the other.
 double cycle_scale(std::vector<double> chi2, int dof);
 
 }  // namespace isotherm::slam::detail

@@ -46,6 +46,14 @@ TEST(CycleScale, SaysNothingOfAFewCycles) {
   EXPECT_EQ(cycle_scale(std::vector<double>(20, 1e-6), 3), 1.0);
 }
 
+TEST(CycleScale, SaysNothingOfCopies) {
+  EXPECT_EQ(cycle_scale(std::vector<double>(2000, 1e-12), 3), 1.0);
+  Random random(53);
+  auto sample = chi_squared_sample(random, 1000, 3, 1.0);
+  sample.insert(sample.end(), 5000, 1e-12);
+  EXPECT_NEAR(cycle_scale(sample, 3), 1.0, 0.2);
+}
+
 TEST(PriorBySpan, IsEvenBeforeAnythingIsDecided) {
   const PriorBySpan prior;
   EXPECT_DOUBLE_EQ(prior.fraction(), 0.5);

@@ -185,6 +185,27 @@ TEST(Consensus, LearnsThatOdometryIsUnderconfident) {
   EXPECT_GE(metrics.recall(), 0.99);
 }
 
+// A front end may copy a loop along odometry; the copies close perfect cycles with it,
+// which say nothing of how accurate odometry is.
+TEST(Consensus, CopiedLoopsDoNotVouchForOdometry) {
+  auto city =
+      simulate_city({.poses = 600, .measurements = {.loops = 60, .drift = 10.0}, .seed = 6});
+  auto& constraints = city.graph.constraints;
+  const auto roles = edge_roles(city.graph);
+  std::vector<Pose2> step(600);
+  for (const Index k : roles.odometry) step[constraints[k].from] = constraints[k].T_from_to;
+  for (const Index k : roles.candidates) {
+    auto copy = constraints[k];
+    for (int n = 0; n < 4 && std::max(copy.from, copy.to) + 1 < 600; ++n) {
+      copy.T_from_to = step[copy.from++].inverse() * copy.T_from_to * step[copy.to++];
+      if (std::abs(copy.to - copy.from) > 1) constraints.push_back(copy);
+    }
+  }
+  const auto result = consensus(city.graph, edge_roles(city.graph));
+  EXPECT_EQ(count(result.verdicts, Verdict::keep),
+            static_cast<std::int64_t>(result.verdicts.size()));
+}
+
 // Odometry in pieces of ten poses, with edges that skip a pose where a step is missing.
 TEST(Consensus, JoinsBrokenOdometryByShortLoops) {
   Random random(42);
