@@ -20,7 +20,7 @@ using spectral::Verdict;
 constexpr int kStepsPerRound = 6;     // of Gauss-Newton
 constexpr int kMostDrops = 3;         // a loop dropped so often is not tried again
 constexpr int kCalibrations = 6;      // of the covariance scales, on proven loops
-constexpr int kLastCalibrations = 2;  // and with the likely ones
+constexpr int kLastCalibrations = 1;  // and with the likely ones
 constexpr int kReconsiderations = 3;
 constexpr int kMostDoublings = 4;  // of odometry's covariance, where it refutes every loop
 // An accepted loop is dropped beyond twice the deviations that an average one would
