@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "loop_pair.hpp"
 #include "short_cycles.hpp"
 #include "variance_components.hpp"
 
@@ -22,11 +23,10 @@ bool differ(double a, double b) { return std::abs(std::log(a / b)) >= std::log(k
 }  // namespace
 
 template <class Pose>
-Calibration<Pose>::Calibration(const ReducedGraph<Pose>& graph, const Pairs& pairs)
-    : graph_(graph), pairs_(pairs), cycle_chi2_(cycle_chi2(graph, pairs)) {}
-
-template <class Pose>
-void Calibration<Pose>::learn_from_cycles() {
+void Calibration<Pose>::learn_from_cycles(const MapVolume<Pose>& map) {
+  for (const Evidence& evidence : compare_pairs(graph_, pairs_, map, {})) {
+    cycle_chi2_.push_back(evidence.chi2);
+  }
   least_odometry_ = least_odometry(cycle_chi2_);
   scale_.odometry = least_odometry_;
 }

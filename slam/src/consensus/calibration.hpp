@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "estimate.hpp"
+#include "map_volume.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -18,7 +19,7 @@ class Calibration {
   using Pairs = std::vector<std::pair<Index, Index>>;
 
   /// `pairs` (near_pairs) are the short cycles. Both must outlive this object.
-  Calibration(const ReducedGraph<Pose>& graph, const Pairs& pairs);
+  Calibration(const ReducedGraph<Pose>& graph, const Pairs& pairs) : graph_(graph), pairs_(pairs) {}
 
   const CovarianceScale& scale() const noexcept { return scale_; }
 
@@ -26,8 +27,9 @@ class Calibration {
   /// learnt; 1 before. Below 1 where the file understates how accurate they are.
   double loop_level() const noexcept { return loop_level_; }
 
-  /// Odometry's covariance from the short cycles of all loops, true and false.
-  void learn_from_cycles();
+  /// Odometry's covariance from the short cycles of all loops, true and false. Comes
+  /// before learn_from_accepted().
+  void learn_from_cycles(const MapVolume<Pose>& map);
 
   /// One step of variance components from the accepted loops. True if the scale or the
   /// level has changed so much that loops should be judged again.
@@ -41,7 +43,7 @@ class Calibration {
 
   const ReducedGraph<Pose>& graph_;
   const Pairs& pairs_;
-  std::vector<double> cycle_chi2_;  // one a pair
+  std::vector<double> cycle_chi2_;  // one a pair, at the covariances of the file
   CovarianceScale scale_;
   double least_odometry_ = 1.0;
   double loop_level_ = 1.0;

@@ -43,6 +43,19 @@ Evidence compare(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
   return weigh(r, measured.measured.covariance + j * predicted.covariance * j.transpose(), map);
 }
 
+template <class Pose>
+std::vector<Evidence> compare_pairs(const ReducedGraph<Pose>& graph,
+                                    const std::vector<std::pair<Index, Index>>& pairs,
+                                    const MapVolume<Pose>& map, const CovarianceScale& scale) {
+  const auto loops = forward_loops(graph, scale);
+  std::vector<Evidence> evidence;
+  evidence.reserve(pairs.size());
+  for (const auto& [first, second] : pairs) {
+    evidence.push_back(compare(graph, scale, loops[first], loops[second], map));
+  }
+  return evidence;
+}
+
 template std::vector<ForwardLoop<Pose2>> forward_loops(const ReducedGraph<Pose2>&,
                                                        const CovarianceScale&);
 template std::vector<ForwardLoop<Pose3>> forward_loops(const ReducedGraph<Pose3>&,
@@ -53,5 +66,12 @@ template Evidence compare(const ReducedGraph<Pose2>&, const CovarianceScale&,
 template Evidence compare(const ReducedGraph<Pose3>&, const CovarianceScale&,
                           const ForwardLoop<Pose3>&, const ForwardLoop<Pose3>&,
                           const MapVolume<Pose3>&);
+
+template std::vector<Evidence> compare_pairs(const ReducedGraph<Pose2>&,
+                                             const std::vector<std::pair<Index, Index>>&,
+                                             const MapVolume<Pose2>&, const CovarianceScale&);
+template std::vector<Evidence> compare_pairs(const ReducedGraph<Pose3>&,
+                                             const std::vector<std::pair<Index, Index>>&,
+                                             const MapVolume<Pose3>&, const CovarianceScale&);
 
 }  // namespace isotherm::slam::detail

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "estimate.hpp"
@@ -29,5 +30,11 @@ template <class Pose>
 Evidence compare(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
                  const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured,
                  const MapVolume<Pose>& map);
+
+/// compare() for each of `pairs` of loops, the first as the known one.
+template <class Pose>
+std::vector<Evidence> compare_pairs(const ReducedGraph<Pose>& graph,
+                                    const std::vector<std::pair<Index, Index>>& pairs,
+                                    const MapVolume<Pose>& map, const CovarianceScale& scale);
 
 }  // namespace isotherm::slam::detail

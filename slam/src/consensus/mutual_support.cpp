@@ -9,12 +9,11 @@ MutualSupport mutual_support(const ReducedGraph<Pose>& graph,
                              const std::vector<std::pair<Index, Index>>& pairs,
                              const MapVolume<Pose>& map, const CovarianceScale& scale,
                              double gate) {
-  const auto loops = forward_loops(graph, scale);
+  const auto evidence = compare_pairs(graph, pairs, map, scale);
   MutualSupport support;
-  for (const auto& [first, second] : pairs) {
-    const Evidence evidence = compare(graph, scale, loops[first], loops[second], map);
-    auto& kind = evidence.chi2 <= gate ? support.agreeing : support.contradicting;
-    kind.push_back({first, second, evidence.log_ratio});
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    auto& kind = evidence[k].chi2 <= gate ? support.agreeing : support.contradicting;
+    kind.push_back({pairs[k].first, pairs[k].second, evidence[k].log_ratio});
   }
   std::stable_sort(support.agreeing.begin(), support.agreeing.end(),
                    [](const Support& a, const Support& b) { return a.gain > b.gain; });

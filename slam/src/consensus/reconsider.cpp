@@ -44,8 +44,7 @@ typename Search<Pose>::Selection Search<Pose>::held_by_themselves() {
     const auto& link = graph_.loops[accepted[k]];
     const Evidence evidence = weigh_held_out(link, estimate_.residual(link), covariances[k],
                                              calibration_.scale().loops, map_);
-    const double odds = evidence.log_ratio + prior_.log_odds(span(accepted[k]));
-    if (odds < required_odds_) suspects.push_back(accepted[k]);
+    if (log_odds(accepted[k], evidence) < required_odds_) suspects.push_back(accepted[k]);
   }
   return suspects;
 }

@@ -44,7 +44,7 @@ Search<Pose>::Search(const ReducedGraph<Pose>& graph, const ConsensusOptions& op
       calibration_(graph, near_pairs_),
       states_(graph.loops.size()),
       accepted_(graph.loops.size(), false) {
-  if (options.calibrate) calibration_.learn_from_cycles();
+  if (options.calibrate) calibration_.learn_from_cycles(map_);
   judge_anew();
 }
 
@@ -88,8 +88,7 @@ void Search<Pose>::accept_while_possible() {
   while (true) {
     settle();
     assess();
-    learn_prior();
-    learn_alikeness();
+    learn_from_decided();
     if (static_cast<int>(rounds_.size()) >= options_.max_rounds) {
       settled_ = false;
       return;
@@ -116,8 +115,7 @@ bool Search<Pose>::readmit() {
     if (states_[k].connected && refuted(loop)) out.push_back(loop);
   }
   weigh_afresh(out);
-  learn_prior();
-  learn_alikeness();
+  learn_from_decided();
   return accept_next_batch();
 }
 
@@ -242,7 +240,7 @@ std::vector<double> Search<Pose>::log_odds() const {
   std::vector<double> odds;
   odds.reserve(states_.size());
   for (std::size_t k = 0; k < states_.size(); ++k) {
-    odds.push_back(states_[k].evidence.log_ratio + prior_.log_odds(span(static_cast<Index>(k))));
+    odds.push_back(log_odds(static_cast<Index>(k), states_[k].evidence));
   }
   return odds;
 }
@@ -295,18 +293,15 @@ void Search<Pose>::tell_progress() const {
 
 // Loops that are refuted count as false.
 template <class Pose>
-void Search<Pose>::learn_prior() {
+void Search<Pose>::learn_from_decided() {
   std::vector<PriorBySpan::Decision> decided;
   for (std::size_t k = 0; k < states_.size(); ++k) {
     const auto loop = static_cast<Index>(k);
     if (accepted_[k] || refuted(loop)) decided.push_back({span(loop), accepted_[k]});
   }
   prior_ = PriorBySpan(decided);
-}
 
-// A Beta posterior from the pairs of which both are refuted.
-template <class Pose>
-void Search<Pose>::learn_alikeness() {
+  // A Beta posterior from the pairs of which both are refuted.
   const auto both_refuted = [this](const Support& pair) {
     return refuted(pair.first) && refuted(pair.second);
   };
@@ -323,6 +318,11 @@ Index Search<Pose>::span(Index loop) const {
 }
 
 template <class Pose>
+double Search<Pose>::log_odds(Index loop, const Evidence& evidence) const {
+  return evidence.log_ratio + prior_.log_odds(span(loop));
+}
+
+template <class Pose>
 bool Search<Pose>::calibrate() {
   std::vector<double> probability = log_odds();
   for (double& p : probability) p = 1.0 / (1.0 + std::exp(-p));
@@ -336,11 +336,6 @@ template <class Pose>
 void Search<Pose>::judge_anew() {
   for (auto& state : states_) state.drops = 0;
   forget_bounds();
-  find_support();
-}
-
-template <class Pose>
-void Search<Pose>::find_support() {
   support_ = mutual_support(graph_, near_pairs_, map_, calibration_.scale(), gate_);
 }
 

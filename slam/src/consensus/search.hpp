@@ -81,12 +81,11 @@ class Search {
   Selection in_question() const;
   Batch next_batch() const;
   std::vector<double> log_odds() const;
+  double log_odds(Index loop, const Evidence& evidence) const;
   void accept(const Batch& batch);
-  void learn_prior();
-  void learn_alikeness();
+  void learn_from_decided();
   bool calibrate();
   void judge_anew();
-  void find_support();
   Index span(Index loop) const;
   double drop_gate() const;
   void tell_progress() const;

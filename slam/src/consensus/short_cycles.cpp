@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "isotherm/base/statistics.hpp"
-#include "loop_pair.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -15,19 +14,6 @@ constexpr double kRounding = 1e-8;
 
 }  // namespace
 
-template <class Pose>
-std::vector<double> cycle_chi2(const ReducedGraph<Pose>& graph,
-                               const std::vector<std::pair<Index, Index>>& pairs) {
-  const auto loops = forward_loops(graph, {});
-  const MapVolume<Pose> map(graph.poses);
-  std::vector<double> chi2;
-  chi2.reserve(pairs.size());
-  for (const auto& [first, second] : pairs) {
-    chi2.push_back(compare(graph, {}, loops[first], loops[second], map).chi2);
-  }
-  return chi2;
-}
-
 double cycle_scale(std::vector<double> chi2, int dof) {
   std::erase_if(chi2, [](double x) { return x < kRounding; });
   if (chi2.size() < kFewestCycles) return 1.0;
@@ -36,10 +22,5 @@ double cycle_scale(std::vector<double> chi2, int dof) {
   std::nth_element(chi2.begin(), at, chi2.end());
   return *at / chi_squared_quantile(kQuantile, dof);
 }
-
-template std::vector<double> cycle_chi2(const ReducedGraph<Pose2>&,
-                                        const std::vector<std::pair<Index, Index>>&);
-template std::vector<double> cycle_chi2(const ReducedGraph<Pose3>&,
-                                        const std::vector<std::pair<Index, Index>>&);
 
 }  // namespace isotherm::slam::detail

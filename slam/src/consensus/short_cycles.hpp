@@ -1,20 +1,12 @@
 #pragma once
 
-#include <utility>
 #include <vector>
-
-#include "reduced_graph.hpp"
 
 namespace isotherm::slam::detail {
 
-/// Chi-squared with which a loop and two short pieces of odometry predict another, for
-/// each of `pairs` (near_pairs), at the covariances that the file states.
-template <class Pose>
-std::vector<double> cycle_chi2(const ReducedGraph<Pose>& graph,
-                               const std::vector<std::pair<Index, Index>>& pairs);
-
 /// The factor on all covariances under which short cycles miss by as much as they should,
-/// or 1 if there are too few to tell. `chi2` of `dof` degrees of freedom is that of each.
+/// or 1 if there are too few to tell. `chi2`, of `dof` degrees of freedom, is that with
+/// which a loop and two short pieces of odometry predict another (compare()).
 ///
 /// Matches a low quantile: the cycles of false loops miss by far, and make the answer
 /// larger, but hardly smaller. Cycles that close to rounding are left out: one of their
