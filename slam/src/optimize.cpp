@@ -19,7 +19,7 @@ void require_positive(const char* field, double value) {
 Initialization default_start(RobustKernel kernel) {
   switch (kernel) {
     case RobustKernel::none:
-      return Initialization::spanning_tree;
+      return Initialization::automatic;  // see starting_poses()
     case RobustKernel::gnc:
     case RobustKernel::gnc_gm:
       return Initialization::switchable;
@@ -46,6 +46,17 @@ OptimizeOptions resolve(OptimizeOptions options, int dof) {
     options.initialization = default_start(options.kernel);
   }
   return options;
+}
+
+// Least squares has no odometry to lean on: it starts at the chordal relaxation, or at
+// the spanning tree where that costs less, as it may where loops are false.
+template <class Pose>
+std::vector<Pose> starting_poses(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                                 Initialization method, const NormalEquations<Pose>& equations) {
+  if (method != Initialization::automatic) return initial_poses(graph, roles, method);
+  auto tree = initial_poses(graph, roles, Initialization::spanning_tree);
+  auto chordal = initial_poses(graph, roles, Initialization::chordal);
+  return equations.chi2(chordal).sum() < equations.chi2(tree).sum() ? chordal : tree;
 }
 
 // Runs the method of the kernel; leaves the weights it ended with.
@@ -104,8 +115,8 @@ OptimizeResult<Pose> optimize(const PoseGraph<Pose>& graph, const EdgeRoles& rol
   for (const Index k : roles.candidates) robust[k] = true;
 
   OptimizeResult<Pose> result;
-  result.poses = initial_poses(prepared.graph, roles, options.initialization);
   NormalEquations<Pose> equations(prepared.graph);
+  result.poses = starting_poses(prepared.graph, roles, options.initialization, equations);
   const auto summary = minimize_by_kernel(equations, robust, options, result.poses, result.weight);
 
   result.status = summary.status;

@@ -102,6 +102,23 @@ TYPED_TEST(Optimize, EndsWhereChiSquaredIsFlatWithFullInformation) {
   }
 }
 
+TYPED_TEST(Optimize, StartsWhereLeastSquaresCostsLeast) {
+  using Pose = TypeParam;
+  const auto [graph, truth] = random_loop_graph<Pose>(this->random, 60, 40, 1.0);
+  auto wrong = graph;
+  for (Index k = 59; k < 89; ++k) {  // most loops
+    wrong.constraints[k].T_from_to = Pose::exp(random_tangent<Pose>(this->random, 2.0));
+  }
+  for (const auto& tried : {graph, wrong}) {
+    const auto cost_from = [&tried](Initialization start) {
+      return optimize(tried, {.initialization = start, .max_iterations = 0}).initial_cost;
+    };
+    EXPECT_EQ(
+        cost_from(Initialization::automatic),
+        std::min(cost_from(Initialization::spanning_tree), cost_from(Initialization::chordal)));
+  }
+}
+
 TYPED_TEST(Optimize, GaugeIsHeldOncePerComponentAndAtFixedVertices) {
   using Pose = TypeParam;
   auto [graph, truth] = random_loop_graph<Pose>(this->random, 20, 0, 1.0);

@@ -10,8 +10,8 @@ namespace isotherm::slam {
 
 /// Where an optimisation starts.
 enum class Initialization {
-  /// The method's own: switchable for GNC and RRR, odometry for the other robust
-  /// ones, the spanning tree without a kernel.
+  /// The method's own: switchable for GNC and RRR, odometry for the other robust ones;
+  /// without a kernel the chordal relaxation or the spanning tree, whichever costs less.
   automatic,
   odometry,       ///< chained odometry; parts it does not join hang on other constraints
   spanning_tree,  ///< shortest paths, in constraints, from the held vertices
