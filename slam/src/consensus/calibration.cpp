@@ -5,6 +5,7 @@
 
 #include "loop_pair.hpp"
 #include "short_cycles.hpp"
+#include "telling_loops.hpp"
 #include "variance_components.hpp"
 
 namespace isotherm::slam::detail {
@@ -13,6 +14,7 @@ namespace {
 constexpr double kMargin = 10.0;        // over what short cycles say of odometry
 constexpr double kLargestChange = 2.0;  // of a factor, in one step
 constexpr double kWorthRescaling = 1.1;
+constexpr int kSteps = 6;  // of Gauss-Newton
 
 double moved(double present, double wanted, double least) {
   return std::max(least, std::clamp(wanted, present / kLargestChange, present * kLargestChange));
@@ -41,7 +43,13 @@ bool Calibration<Pose>::learn_from_accepted(const Estimate<Pose>& estimate,
   }
   least_odometry_ = std::min(least_odometry_, least_odometry(chi2));
 
-  const auto wanted = variance_components(graph_, estimate, accepted, probability, scale_);
+  // Short cycles go through loops as well: where they close better than stated, loops do.
+  const CovarianceScale shown = {scale_.odometry, scale_.loops * least_odometry_};
+  const auto telling = telling_loops(graph_, estimate, accepted, shown);
+  Estimate<Pose> from_telling(graph_);
+  from_telling.restore(estimate.layout());
+  from_telling.update(telling, scale_, kSteps);
+  const auto wanted = variance_components(graph_, from_telling, telling, probability, scale_);
   const CovarianceScale next = {moved(scale_.odometry, wanted.odometry, least_odometry_),
                                 moved(scale_.loops, wanted.loops, 1.0)};
   const double level = wanted.loops / next.loops;

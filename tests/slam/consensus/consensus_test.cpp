@@ -20,6 +20,7 @@ namespace isotherm::slam {
 namespace {
 
 using isotherm_test::random_loop_graph;
+using isotherm_test::random_tangent;
 using spectral::Verdict;
 
 template <class Pose>
@@ -183,6 +184,27 @@ TEST(Consensus, LearnsThatOdometryIsUnderconfident) {
   EXPECT_EQ(result.loop_scale, 1.0) << "what the file claims of a loop is not tightened";
   EXPECT_GE(metrics.precision(), 0.99);
   EXPECT_GE(metrics.recall(), 0.99);
+}
+
+// Loops between near poses that odometry ties far better, and that are wrong by three
+// times what they claim, are no measure of odometry or of the loops that hold the map.
+TEST(Consensus, SloppyLoopsBetweenNearPosesDoNotWidenTheScales) {
+  Random random(12);
+  auto city = simulate_city({.poses = 800, .measurements = {.loops = 150}, .seed = 5});
+  for (int k = 0; k < 300; ++k) {
+    Constraint<Pose2> near;
+    near.from = static_cast<Index>(random.index(790));
+    near.to = near.from + 2 + static_cast<Index>(random.index(6));
+    const Pose2::Tangent sigma(0.3, 0.3, 0.1);
+    near.information = sigma.cwiseAbs2().cwiseInverse().asDiagonal();
+    const Pose2::Tangent error = 3.0 * sigma.cwiseProduct(random_tangent<Pose2>(random, 1.0));
+    near.T_from_to = city.truth[near.from].inverse() * city.truth[near.to] * Pose2::exp(error);
+    city.graph.constraints.push_back(near);
+  }
+  const auto result = consensus(city.graph, edge_roles(city.graph));
+  EXPECT_LT(result.odometry_scale, 1.5);
+  EXPECT_LT(result.loop_scale, 1.5);
+  for (std::size_t k = 0; k < 150; ++k) EXPECT_EQ(result.verdicts[k].verdict, Verdict::keep);
 }
 
 // A front end may copy a loop along odometry; the copies close perfect cycles with it,
