@@ -27,6 +27,7 @@ constexpr int kMostDoublings = 4;  // of odometry's covariance, where it refutes
 // need to meet the gate: real errors have heavy tails, and where it was accepted it had
 // evidence of its own.
 constexpr double kDropFactor = 4.0;
+constexpr double kBridgeProbability = 0.95;  // of a loop of which only its span is known
 
 double log_odds_of(double probability) { return std::log(probability / (1.0 - probability)); }
 
@@ -260,8 +261,23 @@ typename Search<Pose>::Batch Search<Pose>::next_batch() const {
     batch = {"cluster",
              strongest_clusters(support_, eligible, odds, alike_fraction_, required_odds_)};
   }
-  if (batch.loops.empty() && take_likely_) batch = {"prior", passing(0.0)};
+  if (!batch.loops.empty() || !take_likely_) return batch;
+  batch = {"prior", passing(0.0)};
+  if (batch.loops.empty()) batch = {"span", bridges(eligible, odds)};
   return batch;
+}
+
+// Short loops between parts that nothing joins: broken odometry. They have no evidence
+// but their span. What is said of a longer one, as between robots, would be a guess.
+template <class Pose>
+typename Search<Pose>::Selection Search<Pose>::bridges(const Selection& eligible,
+                                                       const std::vector<double>& odds) const {
+  const double least = log_odds_of(kBridgeProbability);
+  Selection loops;
+  std::ranges::copy_if(eligible, std::back_inserter(loops), [&](Index k) {
+    return !states_[k].connected && span(k) <= options_.window && odds[k] > least;
+  });
+  return most_certain_third(std::move(loops), odds, options_.significance);
 }
 
 template <class Pose>

@@ -80,6 +80,7 @@ class Search {
 
   Selection in_question() const;
   Batch next_batch() const;
+  Selection bridges(const Selection& eligible, const std::vector<double>& odds) const;
   std::vector<double> log_odds() const;
   double log_odds(Index loop, const Evidence& evidence) const;
   void accept(const Batch& batch);

@@ -256,6 +256,30 @@ TEST(Consensus, JoinsBrokenOdometryByShortLoops) {
   EXPECT_EQ(count(result.verdicts, Verdict::ambiguous), 0);
 }
 
+// The same with a single edge over each gap, which no other confirms: it is the fraction
+// of true loops among those as short that speaks for it.
+TEST(Consensus, JoinsBrokenOdometryByTheSpanOfLoops) {
+  auto city = simulate_city({.poses = 600, .measurements = {.loops = 200}, .seed = 8});
+  auto& constraints = city.graph.constraints;
+  const auto step = constraints.front();
+  std::erase_if(constraints, [](const auto& c) { return c.to == c.from + 1 && c.to % 20 == 0; });
+  for (Index v = 1; v + 2 < 600; ++v) {
+    if (v % 20 == 18) continue;
+    auto skip = step;
+    skip.from = v;
+    skip.to = v + 2;
+    skip.T_from_to = city.truth[v].inverse() * city.truth[v + 2];
+    constraints.push_back(skip);
+  }
+  const auto bad = corrupt(city.graph, city.truth, {.fraction = 0.5, .seed = 8});
+  const auto result = consensus(bad.graph, edge_roles(bad.graph));
+  const auto metrics = evaluate_loops(result.verdicts, bad.labels);
+  EXPECT_GE(metrics.precision(), 0.99);
+  EXPECT_GE(metrics.recall(), 0.99);
+  EXPECT_EQ(count(result.verdicts, Verdict::ambiguous), 0);
+  EXPECT_TRUE(std::ranges::any_of(result.rounds, [](const auto& r) { return r.rule == "span"; }));
+}
+
 TYPED_TEST(ConsensusOf, DegenerateGraphs) {
   using Pose = TypeParam;
   PoseGraph<Pose> graph;
