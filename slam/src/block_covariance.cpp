@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <map>
 #include <memory>
-#include <numeric>
 
 #include <Eigen/Dense>
 
 #include "dense_kernels.hpp"
-#include "front_tree.hpp"
+#include "half_solve.hpp"
+#include "pair_plan.hpp"
+#include "remainders.hpp"
 
 namespace isotherm::slam {
 namespace {
@@ -16,90 +17,7 @@ namespace {
 using Eigen::MatrixXd;
 
 // Pairs whose products with a front are formed together.
-constexpr std::ptrdiff_t kBatch = 128;
-
-// What elimination of the fronts below one front leaves of e_a on the rows of that
-// front, for every row a of some pairs that is eliminated below it. Rows whose
-// branches have met are carried on together.
-template <int Dof>
-class Remainders {
- public:
-  using Pair = std::pair<Index, Index>;
-
-  Remainders(const FrontTree& tree, std::span<const Pair> pairs, std::span<const std::size_t> batch,
-             Index front)
-      : tree_(tree) {
-    for (const std::size_t k : batch) {
-      start(pairs[k].first, front);
-      start(pairs[k].second, front);
-      const bool below = tree.front_of(pairs[k].first) != front;
-      any_between_ = any_between_ || (below && tree.front_of(pairs[k].second) != front);
-    }
-    // A parent's number is above its children's.
-    while (!groups_.empty() && groups_.begin()->first != front) {
-      auto lowest = groups_.extract(groups_.begin());
-      carry_up(lowest.key(), std::move(lowest.mapped()));
-    }
-    if (groups_.empty()) return;
-    columns_ = std::move(groups_.begin()->second.x);
-    const auto& blocks = groups_.begin()->second.blocks;
-    for (std::size_t k = 0; k < blocks.size(); ++k) place_[blocks[k]] = static_cast<Index>(k);
-  }
-
-  /// Whether some pair has both of its rows below the front.
-  bool any_between() const { return any_between_; }
-
-  /// Dof columns a row, in no particular order.
-  const MatrixXd& columns() const { return columns_; }
-  Index column(Index block) const { return place_.at(block) * Dof; }
-  auto of(Index block) const { return columns_.template middleCols<Dof>(column(block)); }
-
- private:
-  struct Group {
-    std::vector<Index> blocks;
-    MatrixXd x;  // on the rows of a front, Dof columns a block
-  };
-
-  void start(Index block, Index front) {
-    const Index own = tree_.front_of(block);
-    if (own == front || !place_.emplace(block, 0).second) return;
-    auto x = append(own, {&block, 1});
-    x.template middleRows<Dof>(tree_.column_of(block) * Dof).setIdentity();
-  }
-
-  // New columns, zero, of the group at a front.
-  auto append(Index front, std::span<const Index> blocks) {
-    auto& group = groups_[front];
-    const auto before = static_cast<Eigen::Index>(group.blocks.size()) * Dof;
-    const auto added = static_cast<Eigen::Index>(blocks.size()) * Dof;
-    group.blocks.insert(group.blocks.end(), blocks.begin(), blocks.end());
-    group.x.conservativeResize(Eigen::Index{tree_.size(front)} * Dof, before + added);
-    auto fresh = group.x.rightCols(added);
-    fresh.setZero();
-    return fresh;
-  }
-
-  void carry_up(Index front, Group group) {
-    const auto L = tree_.values(front);
-    const Eigen::Index width = L.cols();
-    const Eigen::Index below = L.rows() - width;
-    auto own = group.x.topRows(width);
-    auto left = group.x.bottomRows(below);
-    solve_lower(L.topRows(width), own);
-    add_product(left, -1.0, L.bottomRows(below), own);
-    auto target = append(tree_.parent(front), group.blocks);
-    const auto places = tree_.place_in_parent(front);
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      target.template middleRows<Dof>(places[k] * Dof) = left.template middleRows<Dof>(k * Dof);
-    }
-  }
-
-  const FrontTree& tree_;
-  std::map<Index, Group> groups_;  // by the front they have come to
-  std::map<Index, Index> place_;   // of a row among the columns
-  bool any_between_ = false;
-  MatrixXd columns_;
-};
+constexpr std::size_t kBatch = 128;
 
 template <int Dof>
 class PairInversion {
@@ -110,13 +28,15 @@ class PairInversion {
   using Front = std::shared_ptr<const MatrixXd>;
 
   PairInversion(const BlockCholesky& factor, std::span<const Pair> pairs)
-      : tree_(factor), pairs_(pairs), answers_(pairs.size()), diagonal_(factor.block_count()) {
-    sort_pairs_by_meeting();
-    find_wanted_fronts();
-  }
+      : tree_(factor),
+        pairs_(pairs),
+        plan_(tree_, pairs),
+        answers_(pairs.size()),
+        diagonal_(factor.block_count()) {}
 
   std::vector<PairCovariance<Dof>> run() {
-    for (const Index root : roots_) descend(root, nullptr);
+    for (const Index root : plan_.roots()) descend(root, nullptr);
+    half_solve();
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
       const auto [a, b] = pairs_[k];
       if (a >= 0) answers_[k].first = diagonal_[a];
@@ -126,61 +46,13 @@ class PairInversion {
   }
 
  private:
-  void sort_pairs_by_meeting() {
-    std::vector<Index> meeting(pairs_.size(), FrontTree::kNone);
-    for (std::size_t k = 0; k < pairs_.size(); ++k) {
-      const auto [a, b] = pairs_[k];
-      if (a >= 0 && b >= 0) meeting[k] = tree_.meeting(tree_.front_of(a), tree_.front_of(b));
-    }
-    by_meeting_.resize(pairs_.size());
-    std::iota(by_meeting_.begin(), by_meeting_.end(), std::size_t{0});
-    std::stable_sort(by_meeting_.begin(), by_meeting_.end(),
-                     [&](std::size_t x, std::size_t y) { return meeting[x] < meeting[y]; });
-    first_pair_.assign(tree_.front_count() + 1, 0);
-    for (std::size_t k = 0; k < pairs_.size(); ++k) ++first_pair_[meeting[k] + 1];
-    std::partial_sum(first_pair_.begin(), first_pair_.end(), first_pair_.begin());
-  }
-
-  // Those on the way from a root to a row that is asked for. A front's cost is that of
-  // its whole branch.
-  void find_wanted_fronts() {
-    const Index fronts = tree_.front_count();
-    std::vector<bool> wanted(fronts, false);
-    for (const auto& [a, b] : pairs_) {
-      if (a >= 0) wanted[tree_.front_of(a)] = true;
-      if (b >= 0) wanted[tree_.front_of(b)] = true;
-    }
-    cost_.assign(fronts, 0.0);
-    children_.resize(fronts);
-    for (Index f = 0; f < fronts; ++f) {
-      if (!wanted[f]) continue;
-      const double size = Dof * tree_.size(f);
-      cost_[f] += size * size * Dof * tree_.width(f);
-      const Index p = tree_.parent(f);
-      if (p == FrontTree::kNone) {
-        roots_.push_back(f);
-      } else {
-        wanted[p] = true;
-        cost_[p] += cost_[f];
-        children_[p].push_back(f);
-      }
-    }
-    // The heaviest child comes first.
-    for (auto& list : children_) {
-      if (list.empty()) continue;
-      std::iter_swap(list.begin(),
-                     std::max_element(list.begin(), list.end(),
-                                      [&](Index x, Index y) { return cost_[x] < cost_[y]; }));
-    }
-  }
-
   // Follows the heaviest branch and leaves the others to calls of its own, which
   // therefore nest no deeper than the logarithm of the number of fronts.
   void descend(Index front, Front parent) {
     while (true) {
       const Front Z = std::make_shared<const MatrixXd>(invert(front, parent.get()));
-      answer(front, *Z);
-      const auto& children = children_[front];
+      if (!plan_.half_solved(front)) answer(front, *Z);
+      const auto& children = plan_.children(front);
       if (children.empty()) return;
       for (auto child = children.begin() + 1; child != children.end(); ++child) descend(*child, Z);
       parent = Z;
@@ -222,12 +94,9 @@ class PairInversion {
   }
 
   void answer(Index front, const MatrixXd& Z) {
-    const auto first = by_meeting_.begin() + first_pair_[front];
-    const auto last = by_meeting_.begin() + first_pair_[front + 1];
-    for (auto at = first; at < last;) {
-      const auto end = at + std::min<std::ptrdiff_t>(kBatch, last - at);
-      answer_batch(front, Z, {at, end});
-      at = end;
+    const auto pairs = plan_.meeting_at(front);
+    for (std::size_t at = 0; at < pairs.size(); at += kBatch) {
+      answer_batch(front, Z, pairs.subspan(at, std::min(kBatch, pairs.size() - at)));
     }
   }
 
@@ -255,15 +124,43 @@ class PairInversion {
     }
   }
 
+  // A front's pairs are those that meet there, and those handed on from below.
+  void half_solve() {
+    std::map<Index, std::vector<std::size_t>> handed_on;
+    for (Index f = 0; f < tree_.front_count(); ++f) {
+      if (!plan_.half_solved(f)) continue;
+      auto pairs = std::move(handed_on[f]);
+      handed_on.erase(f);
+      const auto own = plan_.meeting_at(f);
+      pairs.insert(pairs.end(), own.begin(), own.end());
+      add_half_solved(f, pairs);
+      if (tree_.parent(f) == FrontTree::kNone) continue;
+      auto& above = handed_on[tree_.parent(f)];
+      above.insert(above.end(), pairs.begin(), pairs.end());
+    }
+  }
+
+  void add_half_solved(Index front, std::span<const std::size_t> pairs) {
+    std::vector<Index> blocks;
+    blocks.reserve(2 * pairs.size());
+    for (const std::size_t k : pairs) {
+      blocks.push_back(pairs_[k].first);
+      blocks.push_back(pairs_[k].second);
+    }
+    HalfSolve<Dof> x(tree_, front, blocks);
+    while (x.next()) {
+      for (const std::size_t k : pairs) {
+        const auto [a, b] = pairs_[k];
+        answers_[k].cross += x.of(a).transpose().lazyProduct(x.of(b));
+      }
+    }
+  }
+
   FrontTree tree_;
   std::span<const Pair> pairs_;
+  PairPlan plan_;
   std::vector<PairCovariance<Dof>> answers_;
   std::vector<Block> diagonal_;
-  std::vector<std::size_t> by_meeting_;       // pairs, by the front where their branches meet
-  std::vector<std::size_t> first_pair_;       // places in by_meeting_, one a front and an end
-  std::vector<std::vector<Index>> children_;  // those wanted, the heaviest first
-  std::vector<double> cost_;
-  std::vector<Index> roots_;
 };
 
 }  // namespace

@@ -27,7 +27,9 @@ struct PairCovariance {
 /// between the rows of one supernode. A pair in the pattern of the factor is read
 /// there. For any other pair, what stands below the front where the branches of its two
 /// rows meet is eliminated from e_a and e_b; with w_a and w_b what remains of them on
-/// that front's rows, Z_ab = w_a' Z w_b. Only branches that lead to a pair are visited.
+/// that front's rows, Z_ab = w_a' Z w_b. Where so many pairs meet that it takes less time,
+/// the rows of L^-1 for that front and those above are solved for all of them at once
+/// instead, whose products are Z_ab. Only branches that lead to a pair are visited.
 /// All pairs of neighbours together cost about two factorisations; a pair whose
 /// branches meet near the root costs a triangular solve along them.
 /// Runs on one thread: dense kernels of a serial BLAS may not be called from several.

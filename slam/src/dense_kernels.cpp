@@ -24,14 +24,22 @@ void add_product(DenseView C, double scale, const ConstDenseView& A, const Const
          &ldc);
 }
 
-void solve_lower(const ConstDenseView& L, DenseView X) {
+namespace {
+
+void solve_triangle(const char* side, const ConstDenseView& L, DenseView X) {
   if (X.size() == 0) return;
   const int rows = static_cast<int>(X.rows());
   const int columns = static_cast<int>(X.cols());
   const int ldl = static_cast<int>(L.outerStride());
   const int ldx = static_cast<int>(X.outerStride());
   const double one = 1.0;
-  dtrsm_("L", "L", "N", "N", &rows, &columns, &one, L.data(), &ldl, X.data(), &ldx);
+  dtrsm_(side, "L", "N", "N", &rows, &columns, &one, L.data(), &ldl, X.data(), &ldx);
 }
+
+}  // namespace
+
+void solve_lower(const ConstDenseView& L, DenseView X) { solve_triangle("L", L, X); }
+
+void solve_lower_from_right(const ConstDenseView& L, DenseView X) { solve_triangle("R", L, X); }
 
 }  // namespace isotherm::slam

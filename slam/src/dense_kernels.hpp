@@ -15,4 +15,7 @@ void add_product(DenseView C, double scale, const ConstDenseView& A, const Const
 /// X = L^-1 X, of which the lower triangle of L is used.
 void solve_lower(const ConstDenseView& L, DenseView X);
 
+/// X = X L^-1, of which the lower triangle of L is used.
+void solve_lower_from_right(const ConstDenseView& L, DenseView X);
+
 }  // namespace isotherm::slam

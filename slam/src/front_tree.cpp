@@ -23,16 +23,15 @@ FrontTree::FrontTree(const BlockCholesky& factor)
     std::fill(front_at_.begin() + first_column_[f], front_at_.begin() + first_column_[f + 1], f);
   }
 
-  const auto row = [&](Index at) { return factor_.rows[std::size_t(at) * d] / d; };
   parent_.assign(fronts, kNone);
   place_in_parent_.assign(row_start_.back(), kNone);
   for (Index f = 0; f < fronts; ++f) {
-    Index at = row_start_[f] + width(f);
-    if (at == row_start_[f + 1]) continue;
-    const Index p = parent_[f] = front_at_[row(at)];
-    for (Index place = 0; at < row_start_[f + 1]; ++at, ++place) {
-      while (row(row_start_[p] + place) != row(at)) ++place;
-      place_in_parent_[at] = place;
+    Index k = width(f);
+    if (k == size(f)) continue;
+    const Index p = parent_[f] = front_at_[row(f, k)];
+    for (Index place = 0; k < size(f); ++k, ++place) {
+      while (row(p, place) != row(f, k)) ++place;
+      place_in_parent_[row_start_[f] + k] = place;
     }
   }
 }

@@ -35,6 +35,14 @@ class FrontTree {
         .subspan(row_start_[front] + width(front), size(front) - width(front));
   }
 
+  Index block_count() const noexcept { return static_cast<Index>(position_.size()); }
+  /// When a block is eliminated.
+  Index position(Index block) const { return position_[block]; }
+  /// When the k-th row of a front is eliminated.
+  Index row(Index front, Index k) const {
+    return factor_.rows[std::size_t(row_start_[front] + k) * block_size_] / block_size_;
+  }
+
   /// Which block of A a front's own column is.
   Index block(Index front, Index column) const { return block_at_[first_column_[front] + column]; }
   /// The front that eliminates a block, and its column there.
