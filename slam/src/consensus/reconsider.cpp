@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "prediction.hpp"
 #include "search.hpp"
 
 namespace isotherm::slam::detail {
@@ -12,7 +11,7 @@ namespace isotherm::slam::detail {
 // the others come first, and the explanation that leaves more loops accepted stays.
 template <class Pose>
 bool Search<Pose>::reconsider() {
-  const Selection suspects = held_by_themselves();
+  const Selection suspects = judge_.held_by_themselves(required_odds_);
   if (suspects.empty()) return false;
   Snapshot before = snapshot();
   const std::int64_t explained = accepted_count();
@@ -20,58 +19,39 @@ bool Search<Pose>::reconsider() {
     restore(std::move(before));
     return false;
   }
-  for (const Index k : suspects) states_[k].on_trial = true;
+  for (const Index k : suspects) records_[k].on_trial = true;
   accept_while_possible();
-  for (const Index k : suspects) states_[k].on_trial = false;
+  for (const Index k : suspects) records_[k].on_trial = false;
   accept_while_possible();
   if (accepted_count() > explained) return true;
   restore(std::move(before));
   return false;
 }
 
-// Accepted loops that the others do not prove.
-template <class Pose>
-typename Search<Pose>::Selection Search<Pose>::held_by_themselves() {
-  Selection accepted;
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    if (accepted_[k] && graph_.loops[k].a != graph_.loops[k].b) {
-      accepted.push_back(static_cast<Index>(k));
-    }
-  }
-  const auto covariances = estimate_.relative_covariances(accepted);
-  Selection suspects;
-  for (std::size_t k = 0; k < accepted.size(); ++k) {
-    const auto& link = graph_.loops[accepted[k]];
-    const Evidence evidence = weigh_held_out(link, estimate_.residual(link), covariances[k],
-                                             calibration_.scale().loops, map_);
-    if (log_odds(accepted[k], evidence) < required_odds_) suspects.push_back(accepted[k]);
-  }
-  return suspects;
-}
-
 // Takes `loops` back; the number of refuted ones that nothing speaks against then.
 template <class Pose>
 std::size_t Search<Pose>::freed_without(const Selection& loops) {
   Selection turned_away;
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    if (refuted(static_cast<Index>(k))) turned_away.push_back(static_cast<Index>(k));
+  for (std::size_t k = 0; k < accepted_.size(); ++k) {
+    if (judge_.refuted(static_cast<Index>(k))) turned_away.push_back(static_cast<Index>(k));
   }
   for (const Index k : loops) accepted_[k] = false;
-  forget_bounds();
+  judge_.forget_bounds();
   settle();
   assess();
   return static_cast<std::size_t>(
-      std::ranges::count_if(turned_away, [this](Index k) { return inside_gate(k); }));
+      std::ranges::count_if(turned_away, [this](Index k) { return judge_.inside_gate(k); }));
 }
 
 template <class Pose>
 typename Search<Pose>::Snapshot Search<Pose>::snapshot() const {
-  return {states_, accepted_, rounds_.size(), estimate_.layout()};
+  return {judge_.standings(), records_, accepted_, rounds_.size(), estimate_.layout()};
 }
 
 template <class Pose>
 void Search<Pose>::restore(Snapshot before) {
-  states_ = std::move(before.states);
+  judge_.restore(std::move(before.standings));
+  records_ = std::move(before.records);
   accepted_ = std::move(before.accepted);
   rounds_.resize(before.rounds);
   estimate_.restore(std::move(before.layout));
@@ -83,13 +63,11 @@ std::int64_t Search<Pose>::accepted_count() const {
 }
 
 template bool Search<Pose2>::reconsider();
-template Search<Pose2>::Selection Search<Pose2>::held_by_themselves();
 template std::size_t Search<Pose2>::freed_without(const Selection&);
 template Search<Pose2>::Snapshot Search<Pose2>::snapshot() const;
 template void Search<Pose2>::restore(Snapshot);
 template std::int64_t Search<Pose2>::accepted_count() const;
 template bool Search<Pose3>::reconsider();
-template Search<Pose3>::Selection Search<Pose3>::held_by_themselves();
 template std::size_t Search<Pose3>::freed_without(const Selection&);
 template Search<Pose3>::Snapshot Search<Pose3>::snapshot() const;
 template void Search<Pose3>::restore(Snapshot);

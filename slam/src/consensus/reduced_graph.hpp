@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdlib>
 #include <vector>
 
 #include "isotherm/slam/odometry.hpp"
@@ -36,6 +37,9 @@ struct ReducedGraph {
 
   Index node_count() const noexcept { return static_cast<Index>(vertex.size()); }
   bool same_chain(const Link<Pose>& loop) const { return chain[loop.a] == chain[loop.b]; }
+
+  /// Vertices of the full graph between the ends of a loop.
+  Index span(Index loop) const { return std::abs(vertex[loops[loop].a] - vertex[loops[loop].b]); }
 };
 
 /// O(n + q log n). @throws NumericalError for information that is not finite

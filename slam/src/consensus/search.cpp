@@ -10,7 +10,6 @@
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/statistics.hpp"
 #include "near_pairs.hpp"
-#include "prediction.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -23,10 +22,6 @@ constexpr int kCalibrations = 6;      // of the covariance scales, on proven loo
 constexpr int kLastCalibrations = 1;  // and with the likely ones
 constexpr int kReconsiderations = 3;
 constexpr int kMostDoublings = 4;  // of odometry's covariance, where it refutes every loop
-// An accepted loop is dropped beyond twice the deviations that an average one would
-// need to meet the gate: real errors have heavy tails, and where it was accepted it had
-// evidence of its own.
-constexpr double kDropFactor = 4.0;
 constexpr double kBridgeProbability = 0.95;  // of a loop of which only its span is known
 
 double log_odds_of(double probability) { return std::log(probability / (1.0 - probability)); }
@@ -37,14 +32,15 @@ template <class Pose>
 Search<Pose>::Search(const ReducedGraph<Pose>& graph, const ConsensusOptions& options)
     : graph_(graph),
       options_(options),
-      gate_(chi_squared_quantile(1.0 - options.significance, Pose::kDof)),
       required_odds_(log_odds_of(1.0 - options.significance)),
       map_(graph.poses),
       estimate_(graph),
       near_pairs_(near_pairs(graph, options.window)),
       calibration_(graph, near_pairs_),
-      states_(graph.loops.size()),
-      accepted_(graph.loops.size(), false) {
+      records_(graph.loops.size()),
+      accepted_(graph.loops.size(), false),
+      judge_(graph, estimate_, calibration_, map_, accepted_,
+             chi_squared_quantile(1.0 - options.significance, Pose::kDof)) {
   if (options.calibrate) calibration_.learn_from_cycles(map_);
   judge_anew();
 }
@@ -77,9 +73,10 @@ void Search<Pose>::accept_and_calibrate(int most_calibrations) {
 template <class Pose>
 bool Search<Pose>::odometry_leaves_none() const {
   bool any_connected = false;
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    if (accepted_[k] || (!take_likely_ && inside_gate(static_cast<Index>(k)))) return false;
-    any_connected = any_connected || states_[k].connected;
+  for (std::size_t k = 0; k < accepted_.size(); ++k) {
+    const auto loop = static_cast<Index>(k);
+    if (accepted_[k] || (!take_likely_ && judge_.inside_gate(loop))) return false;
+    any_connected = any_connected || judge_.connected(loop);
   }
   return any_connected;
 }
@@ -111,11 +108,12 @@ bool Search<Pose>::accept_next_batch() {
 template <class Pose>
 bool Search<Pose>::readmit() {
   Selection out;
-  for (std::size_t k = 0; k < states_.size(); ++k) {
+  for (std::size_t k = 0; k < accepted_.size(); ++k) {
     const auto loop = static_cast<Index>(k);
-    if (states_[k].connected && refuted(loop)) out.push_back(loop);
+    if (judge_.connected(loop) && judge_.refuted(loop)) out.push_back(loop);
   }
-  weigh_afresh(out);
+  tell_progress();
+  judge_.weigh_afresh(out);
   learn_from_decided();
   return accept_next_batch();
 }
@@ -124,136 +122,49 @@ bool Search<Pose>::readmit() {
 // are dropped, the worst first.
 template <class Pose>
 void Search<Pose>::settle() {
-  do {
+  while (true) {
     tell_progress();
     estimate_.update(accepted_, calibration_.scale(), kStepsPerRound);
-  } while (drop_inconsistent());
-}
-
-template <class Pose>
-double Search<Pose>::drop_gate() const {
-  return gate_ * std::max(1.0, kDropFactor * calibration_.loop_level());
-}
-
-template <class Pose>
-bool Search<Pose>::drop_inconsistent() {
-  const double gate = drop_gate();
-  const auto judge = [&](Index loop) {
-    auto& state = states_[loop];
-    const auto& link = graph_.loops[loop];
-    state.evidence.chi2 =
-        fitted_chi2(link, estimate_.residual(link), state.covariance, calibration_.scale().loops);
-    return state.evidence.chi2 <= gate;
-  };
-  // An old covariance is an upper bound, and so is the chi-squared it gives.
-  Selection doubtful;
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    const auto loop = static_cast<Index>(k);
-    if (accepted_[k] && (!states_[k].fit_known || !judge(loop))) doubtful.push_back(loop);
-  }
-  const auto covariances = estimate_.relative_covariances(doubtful);
-  double worst = 0.0;
-  for (std::size_t k = 0; k < doubtful.size(); ++k) {
-    auto& state = states_[doubtful[k]];
-    state.covariance = covariances[k];
-    state.fit_known = true;
-    judge(doubtful[k]);
-    worst = std::max(worst, state.evidence.chi2);
-  }
-  if (worst <= gate) return false;
-  for (const Index k : doubtful) {
-    if (states_[k].evidence.chi2 >= std::max(gate, 0.5 * worst)) drop(k);
-  }
-  forget_bounds();
-  return true;
-}
-
-template <class Pose>
-void Search<Pose>::drop(Index loop) {
-  accepted_[loop] = false;
-  states_[loop].round = 0;
-  ++states_[loop].drops;
-  if (!rounds_.empty()) ++rounds_.back().dropped;
-}
-
-// Once a loop is dropped or the scales change, predictions may be wider than any
-// since odometry alone.
-template <class Pose>
-void Search<Pose>::forget_bounds() {
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    states_[k].covariance = graph_.odometry_covariance[k] * calibration_.scale().odometry;
-    states_[k].fit_known = false;
+    const Selection out = judge_.inconsistent();
+    if (out.empty()) return;
+    for (const Index k : out) {
+      accepted_[k] = false;
+      records_[k].round = 0;
+      ++records_[k].drops;
+    }
+    if (!rounds_.empty()) rounds_.back().dropped += static_cast<std::int64_t>(out.size());
+    judge_.forget_bounds();
   }
 }
 
-template <class Pose>
-Evidence Search<Pose>::weigh_loop(Index loop, const Matrix& covariance) const {
-  const auto& link = graph_.loops[loop];
-  return weigh_prediction(link, estimate_.residual(link), covariance, calibration_.scale().loops,
-                          map_);
-}
-
-// Accepting loops only ever sharpens predictions, so that an old covariance is an
-// upper bound and its chi-squared a lower one: loops that fail even so are not
-// solved for again.
 template <class Pose>
 void Search<Pose>::assess() {
-  Selection unclear;
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    if (accepted_[k]) continue;
-    auto& state = states_[k];
-    state.connected = estimate_.connected(graph_.loops[k]);
-    if (!state.connected) {
-      state.evidence = {};
-      continue;
-    }
-    state.evidence = weigh_loop(static_cast<Index>(k), state.covariance);
-    if (state.evidence.chi2 <= gate_) unclear.push_back(static_cast<Index>(k));
-  }
-  weigh_afresh(unclear);
-}
-
-template <class Pose>
-void Search<Pose>::weigh_afresh(const Selection& loops) {
   tell_progress();
-  const auto covariances = estimate_.relative_covariances(loops);
-  for (std::size_t k = 0; k < loops.size(); ++k) {
-    states_[loops[k]].covariance = covariances[k];
-    states_[loops[k]].evidence = weigh_loop(loops[k], covariances[k]);
-  }
+  judge_.assess();
 }
 
 template <class Pose>
 typename Search<Pose>::Selection Search<Pose>::in_question() const {
   Selection loops;
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    const auto& state = states_[k];
-    if (!accepted_[k] && !state.on_trial && state.drops < kMostDrops &&
-        inside_gate(static_cast<Index>(k))) {
-      loops.push_back(static_cast<Index>(k));
+  for (std::size_t k = 0; k < accepted_.size(); ++k) {
+    const auto loop = static_cast<Index>(k);
+    const Record& record = records_[k];
+    if (!accepted_[k] && !record.on_trial && record.drops < kMostDrops &&
+        judge_.inside_gate(loop)) {
+      loops.push_back(loop);
     }
   }
   return loops;
 }
 
 template <class Pose>
-std::vector<double> Search<Pose>::log_odds() const {
-  std::vector<double> odds;
-  odds.reserve(states_.size());
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    odds.push_back(log_odds(static_cast<Index>(k), states_[k].evidence));
-  }
-  return odds;
-}
-
-template <class Pose>
 typename Search<Pose>::Batch Search<Pose>::next_batch() const {
   const Selection eligible = in_question();
-  const auto odds = log_odds();
+  const auto odds = judge_.log_odds();
   const auto passing = [&](double least) {
     Selection loops;
     std::ranges::copy_if(eligible, std::back_inserter(loops),
-                         [&](Index k) { return states_[k].connected && odds[k] > least; });
+                         [&](Index k) { return judge_.connected(k) && odds[k] > least; });
     return most_certain_third(std::move(loops), odds, options_.significance);
   };
   Batch batch{"evidence", passing(required_odds_)};
@@ -275,7 +186,7 @@ typename Search<Pose>::Selection Search<Pose>::bridges(const Selection& eligible
   const double least = log_odds_of(kBridgeProbability);
   Selection loops;
   std::ranges::copy_if(eligible, std::back_inserter(loops), [&](Index k) {
-    return !states_[k].connected && span(k) <= options_.window && odds[k] > least;
+    return !judge_.connected(k) && graph_.span(k) <= options_.window && odds[k] > least;
   });
   return most_certain_third(std::move(loops), odds, options_.significance);
 }
@@ -285,12 +196,8 @@ void Search<Pose>::accept(const Batch& batch) {
   const int round = static_cast<int>(rounds_.size()) + 1;
   for (const Index k : batch.loops) {
     accepted_[k] = true;
-    const auto& link = graph_.loops[k];
-    auto& state = states_[k];
-    state.round = round;
-    state.covariance =
-        sharpened(link, estimate_.residual(link), state.covariance, calibration_.scale().loops);
-    state.fit_known = true;
+    records_[k].round = round;
+    judge_.sharpen(k);
   }
   ConsensusRound summary;
   summary.accepted = static_cast<std::int64_t>(batch.loops.size());
@@ -304,22 +211,16 @@ template <class Pose>
 void Search<Pose>::tell_progress() const {
   if (!options_.progress) return;
   const auto done = static_cast<std::uint64_t>(accepted_count());
-  if (!options_.progress({"consensus", done, states_.size()})) throw Cancelled();
+  if (!options_.progress({"consensus", done, accepted_.size()})) throw Cancelled();
 }
 
-// Loops that are refuted count as false.
 template <class Pose>
 void Search<Pose>::learn_from_decided() {
-  std::vector<PriorBySpan::Decision> decided;
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    const auto loop = static_cast<Index>(k);
-    if (accepted_[k] || refuted(loop)) decided.push_back({span(loop), accepted_[k]});
-  }
-  prior_ = PriorBySpan(decided);
+  judge_.learn_prior();
 
   // A Beta posterior from the pairs of which both are refuted.
   const auto both_refuted = [this](const Support& pair) {
-    return refuted(pair.first) && refuted(pair.second);
+    return judge_.refuted(pair.first) && judge_.refuted(pair.second);
   };
   const auto alike = static_cast<double>(std::ranges::count_if(support_.agreeing, both_refuted));
   const auto unlike =
@@ -328,19 +229,8 @@ void Search<Pose>::learn_from_decided() {
 }
 
 template <class Pose>
-Index Search<Pose>::span(Index loop) const {
-  const auto& link = graph_.loops[loop];
-  return std::abs(graph_.vertex[link.a] - graph_.vertex[link.b]);
-}
-
-template <class Pose>
-double Search<Pose>::log_odds(Index loop, const Evidence& evidence) const {
-  return evidence.log_ratio + prior_.log_odds(span(loop));
-}
-
-template <class Pose>
 bool Search<Pose>::calibrate() {
-  std::vector<double> probability = log_odds();
+  std::vector<double> probability = judge_.log_odds();
   for (double& p : probability) p = 1.0 / (1.0 + std::exp(-p));
   const bool changed = calibration_.learn_from_accepted(estimate_, accepted_, probability);
   if (changed) judge_anew();
@@ -350,43 +240,45 @@ bool Search<Pose>::calibrate() {
 // At new scales every old judgement is void.
 template <class Pose>
 void Search<Pose>::judge_anew() {
-  for (auto& state : states_) state.drops = 0;
-  forget_bounds();
-  support_ = mutual_support(graph_, near_pairs_, map_, calibration_.scale(), gate_);
+  for (auto& record : records_) record.drops = 0;
+  judge_.forget_bounds();
+  support_ = mutual_support(graph_, near_pairs_, map_, calibration_.scale(), judge_.gate());
 }
 
 template <class Pose>
 void Search<Pose>::report(ConsensusResult& result) const {
   result.rounds = rounds_;
-  result.inlier_fraction = prior_.fraction();
+  result.inlier_fraction = judge_.inlier_fraction();
   result.odometry_scale = calibration_.scale().odometry;
   result.loop_scale = calibration_.scale().loops;
   result.settled = settled_;
-  result.details.resize(states_.size());
-  std::vector<bool> pruned(states_.size(), false);
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    const auto& state = states_[k];
+  result.details.resize(accepted_.size());
+  std::vector<bool> pruned(accepted_.size(), false);
+  for (std::size_t k = 0; k < accepted_.size(); ++k) {
+    const auto loop = static_cast<Index>(k);
+    const Evidence& evidence = judge_.evidence(loop);
     auto& verdict = result.verdicts[k];
-    verdict.score = state.evidence.chi2;
-    verdict.threshold = accepted_[k] ? drop_gate() : gate_;
+    verdict.score = evidence.chi2;
+    verdict.threshold = accepted_[k] ? judge_.drop_gate() : judge_.gate();
     if (accepted_[k]) {
-      verdict.stage = "round " + std::to_string(state.round);
-    } else if (refuted(static_cast<Index>(k))) {
+      verdict.stage = "round " + std::to_string(records_[k].round);
+    } else if (judge_.refuted(loop)) {
       pruned[k] = true;
       verdict.verdict = Verdict::prune;
       verdict.stage = "refuted";
     } else {
       verdict.verdict = Verdict::ambiguous;
-      verdict.stage = state.connected ? "unproven" : "unconnected";
+      verdict.stage = judge_.connected(loop) ? "unproven" : "unconnected";
     }
     auto& info = result.details[k];
-    info.chi2 = state.evidence.chi2;
-    info.evidence = state.evidence.log_ratio;
-    info.round = state.round;
-    info.connected = state.connected;
+    info.chi2 = evidence.chi2;
+    info.evidence = evidence.log_ratio;
+    info.round = records_[k].round;
+    info.connected = judge_.connected(loop);
   }
-  auto conflicts = name_conflicts(graph_, map_, calibration_.scale(), gate_, accepted_, pruned);
-  for (std::size_t k = 0; k < states_.size(); ++k) {
+  auto conflicts =
+      name_conflicts(graph_, map_, calibration_.scale(), judge_.gate(), accepted_, pruned);
+  for (std::size_t k = 0; k < accepted_.size(); ++k) {
     result.details[k].conflicts = std::move(conflicts[k]);
   }
 }

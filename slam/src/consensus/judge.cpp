@@ -1,0 +1,162 @@
+#include "judge.hpp"
+
+#include <algorithm>
+
+#include "prediction.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+// An accepted loop is dropped beyond twice the deviations that an average one would
+// need to meet the gate: real errors have heavy tails, and where it was accepted it had
+// evidence of its own.
+constexpr double kDropFactor = 4.0;
+
+}  // namespace
+
+template <class Pose>
+Judge<Pose>::Judge(const ReducedGraph<Pose>& graph, const Estimate<Pose>& estimate,
+                   const Calibration<Pose>& calibration, const MapVolume<Pose>& map,
+                   const std::vector<bool>& accepted, double gate)
+    : graph_(graph),
+      estimate_(estimate),
+      calibration_(calibration),
+      map_(map),
+      accepted_(accepted),
+      gate_(gate),
+      standings_(graph.loops.size()) {}
+
+template <class Pose>
+double Judge<Pose>::drop_gate() const {
+  return gate_ * std::max(1.0, kDropFactor * calibration_.loop_level());
+}
+
+template <class Pose>
+double Judge<Pose>::log_odds(Index loop, const Evidence& evidence) const {
+  return evidence.log_ratio + prior_.log_odds(graph_.span(loop));
+}
+
+template <class Pose>
+std::vector<double> Judge<Pose>::log_odds() const {
+  std::vector<double> odds;
+  odds.reserve(standings_.size());
+  for (std::size_t k = 0; k < standings_.size(); ++k) {
+    odds.push_back(log_odds(static_cast<Index>(k), standings_[k].evidence));
+  }
+  return odds;
+}
+
+// Accepting loops only ever sharpens predictions, so that an old covariance is an
+// upper bound and its chi-squared a lower one: loops that fail even so are not
+// solved for again.
+template <class Pose>
+void Judge<Pose>::assess() {
+  Selection unclear;
+  for (std::size_t k = 0; k < standings_.size(); ++k) {
+    if (accepted_[k]) continue;
+    const auto loop = static_cast<Index>(k);
+    auto& standing = standings_[k];
+    standing.connected = estimate_.connected(graph_.loops[k]);
+    standing.evidence = standing.connected ? weigh(loop) : Evidence();
+    if (standing.connected && inside_gate(loop)) unclear.push_back(loop);
+  }
+  weigh_afresh(unclear);
+}
+
+template <class Pose>
+void Judge<Pose>::weigh_afresh(const Selection& loops) {
+  const auto covariances = estimate_.relative_covariances(loops);
+  for (std::size_t k = 0; k < loops.size(); ++k) {
+    auto& standing = standings_[loops[k]];
+    standing.covariance = covariances[k];
+    standing.evidence = weigh(loops[k]);
+  }
+}
+
+template <class Pose>
+Evidence Judge<Pose>::weigh(Index loop) const {
+  const auto& link = graph_.loops[loop];
+  return weigh_prediction(link, estimate_.residual(link), standings_[loop].covariance,
+                          calibration_.scale().loops, map_);
+}
+
+template <class Pose>
+typename Judge<Pose>::Selection Judge<Pose>::inconsistent() {
+  const double gate = drop_gate();
+  const auto fits = [&](Index loop) {
+    auto& standing = standings_[loop];
+    const auto& link = graph_.loops[loop];
+    standing.evidence.chi2 = fitted_chi2(link, estimate_.residual(link), standing.covariance,
+                                         calibration_.scale().loops);
+    return standing.evidence.chi2 <= gate;
+  };
+  // An old covariance is an upper bound, and so is the chi-squared it gives.
+  Selection doubtful;
+  for (std::size_t k = 0; k < standings_.size(); ++k) {
+    const auto loop = static_cast<Index>(k);
+    if (accepted_[k] && (!standings_[k].fit_known || !fits(loop))) doubtful.push_back(loop);
+  }
+  const auto covariances = estimate_.relative_covariances(doubtful);
+  double worst = 0.0;
+  for (std::size_t k = 0; k < doubtful.size(); ++k) {
+    auto& standing = standings_[doubtful[k]];
+    standing.covariance = covariances[k];
+    standing.fit_known = true;
+    fits(doubtful[k]);
+    worst = std::max(worst, standing.evidence.chi2);
+  }
+  if (worst <= gate) return {};
+  std::erase_if(doubtful, [&](Index k) { return evidence(k).chi2 < std::max(gate, 0.5 * worst); });
+  return doubtful;
+}
+
+template <class Pose>
+typename Judge<Pose>::Selection Judge<Pose>::held_by_themselves(double required_odds) const {
+  Selection accepted;
+  for (std::size_t k = 0; k < standings_.size(); ++k) {
+    if (accepted_[k] && graph_.loops[k].a != graph_.loops[k].b) {
+      accepted.push_back(static_cast<Index>(k));
+    }
+  }
+  const auto covariances = estimate_.relative_covariances(accepted);
+  Selection suspects;
+  for (std::size_t k = 0; k < accepted.size(); ++k) {
+    const auto& link = graph_.loops[accepted[k]];
+    const Evidence evidence = weigh_held_out(link, estimate_.residual(link), covariances[k],
+                                             calibration_.scale().loops, map_);
+    if (log_odds(accepted[k], evidence) < required_odds) suspects.push_back(accepted[k]);
+  }
+  return suspects;
+}
+
+template <class Pose>
+void Judge<Pose>::sharpen(Index loop) {
+  const auto& link = graph_.loops[loop];
+  auto& standing = standings_[loop];
+  standing.covariance =
+      sharpened(link, estimate_.residual(link), standing.covariance, calibration_.scale().loops);
+  standing.fit_known = true;
+}
+
+template <class Pose>
+void Judge<Pose>::forget_bounds() {
+  for (std::size_t k = 0; k < standings_.size(); ++k) {
+    standings_[k].covariance = graph_.odometry_covariance[k] * calibration_.scale().odometry;
+    standings_[k].fit_known = false;
+  }
+}
+
+template <class Pose>
+void Judge<Pose>::learn_prior() {
+  std::vector<PriorBySpan::Decision> decided;
+  for (std::size_t k = 0; k < standings_.size(); ++k) {
+    const auto loop = static_cast<Index>(k);
+    if (accepted_[k] || refuted(loop)) decided.push_back({graph_.span(loop), accepted_[k]});
+  }
+  prior_ = PriorBySpan(decided);
+}
+
+template class Judge<Pose2>;
+template class Judge<Pose3>;
+
+}  // namespace isotherm::slam::detail

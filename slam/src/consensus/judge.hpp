@@ -1,0 +1,96 @@
+#pragma once
+
+#include <vector>
+
+#include "calibration.hpp"
+#include "estimate.hpp"
+#include "map_volume.hpp"
+#include "prior_by_span.hpp"
+#include "reduced_graph.hpp"
+
+namespace isotherm::slam::detail {
+
+/// What odometry and the accepted loops say of every loop.
+template <class Pose>
+class Judge {
+ public:
+  using Matrix = typename Pose::Matrix;
+  using Selection = std::vector<Index>;
+
+  /// How one loop stands.
+  struct Standing {
+    bool connected = false;
+    // Of T_a^-1 T_b as predicted by the other accepted loops, or for an accepted loop
+    // by all of them: as last solved for, and so an upper bound. What is known of an
+    // accepted loop is lost when bounds are forgotten.
+    Matrix covariance = Matrix::Zero();
+    bool fit_known = false;
+    Evidence evidence;
+  };
+
+  /// All must outlive this object. `accepted` has one entry a loop; chi-squared of a
+  /// correct loop stays below `gate`.
+  Judge(const ReducedGraph<Pose>& graph, const Estimate<Pose>& estimate,
+        const Calibration<Pose>& calibration, const MapVolume<Pose>& map,
+        const std::vector<bool>& accepted, double gate);
+
+  double gate() const noexcept { return gate_; }
+
+  /// The gate of accepted loops.
+  double drop_gate() const;
+
+  const Evidence& evidence(Index loop) const { return standings_[loop].evidence; }
+  bool connected(Index loop) const { return standings_[loop].connected; }
+  bool inside_gate(Index loop) const { return evidence(loop).chi2 <= gate_; }
+  bool refuted(Index loop) const { return !accepted_[loop] && !inside_gate(loop); }
+
+  /// Prior and evidence of a loop; of all.
+  double log_odds(Index loop, const Evidence& evidence) const;
+  std::vector<double> log_odds() const;
+
+  /// Fraction of true loops among those decided.
+  double inlier_fraction() const noexcept { return prior_.fraction(); }
+
+  /// Weighs every loop that is not accepted; solves for those that an old bound does
+  /// not refute.
+  void assess();
+
+  /// Solves for `loops` and weighs them.
+  void weigh_afresh(const Selection& loops);
+
+  /// The accepted loops that disagree most with the others; none if all agree.
+  Selection inconsistent();
+
+  /// Accepted loops that the others prove by less than `required_odds`.
+  Selection held_by_themselves(double required_odds) const;
+
+  /// Takes into account that `loop` has been accepted.
+  void sharpen(Index loop);
+
+  /// Once a loop is dropped or the scales change, predictions may be wider than any
+  /// since odometry alone.
+  void forget_bounds();
+
+  /// The prior, from the accepted loops and the refuted ones.
+  void learn_prior();
+
+  const std::vector<Standing>& standings() const noexcept { return standings_; }
+  void restore(std::vector<Standing> before) { standings_ = std::move(before); }
+
+ private:
+  Evidence weigh(Index loop) const;
+
+  const ReducedGraph<Pose>& graph_;
+  const Estimate<Pose>& estimate_;
+  const Calibration<Pose>& calibration_;
+  const MapVolume<Pose>& map_;
+  const std::vector<bool>& accepted_;
+  double gate_;
+  std::vector<Standing> standings_;
+  PriorBySpan prior_;
+};
+
+extern template class Judge<Pose2>;
+extern template class Judge<Pose3>;
+
+}  // namespace isotherm::slam::detail
