@@ -16,8 +16,8 @@ from methods import bicocca_error
 from runs import read_csv
 
 # Okabe and Ito's palette, told apart by every kind of colour vision.
-GREY, BLUE, SKY, RED, ORANGE, GREEN, PURPLE = (
-    "#7f7f7f", "#0072B2", "#56B4E9", "#D55E00", "#E69F00", "#009E73", "#CC79A7")
+BLACK, GREY, BLUE, SKY, RED, ORANGE, GREEN, PURPLE = (
+    "#000000", "#7f7f7f", "#0072B2", "#56B4E9", "#D55E00", "#E69F00", "#009E73", "#CC79A7")
 SCALES = (100.0, 70.0, 10.0, 5.0, 1.0, 0.1, 0.001)  # of the paper's Figure 5
 
 
@@ -31,6 +31,7 @@ class Figures:
         figure.savefig(self.folder / f"{name}.png", dpi=110)
         with matplotlib.rc_context({"svg.hashsalt": "isotherm", "svg.fonttype": "none"}):
             figure.savefig(self.folder / f"{name}.svg", metadata={"Date": None})
+        strip_line_ends(self.folder / f"{name}.svg")
         plt.close(figure)
 
     def maps(self):
@@ -166,6 +167,7 @@ class Figures:
             "DCS": (GREEN, "s", "-"), "Cauchy": (PURPLE, "^", "-"),
             "heat (Lap-line) + DCS": (RED, "D", "-"), "heat (χ²) + DCS": (ORANGE, "v", "-"),
             "consensus": (BLUE, "o", "--"), "consensus + DCS": (BLUE, "o", "-"),
+            "consensus + Cauchy": (BLACK, "o", ":"),
         }
         figure, axes = plt.subplots(2, 5, figsize=(13, 6), sharex=True, sharey="row",
                                     constrained_layout=True)
@@ -184,8 +186,13 @@ class Figures:
         axes[1, 0].set_ylabel("aligned RMSE [m]")
         for axis in axes[:, 0]:
             axis.set_ylim(bottom=0.0)
-        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=6)
+        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=7)
         self.save(figure, f"figure6-noise-{style}")
+
+
+def strip_line_ends(path):
+    lines = path.read_text(encoding="utf-8").splitlines()
+    path.write_text("\n".join(line.rstrip() for line in lines) + "\n", encoding="utf-8")
 
 
 def draw_labelled(axis, points, labels, alpha=1.0):

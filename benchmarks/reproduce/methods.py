@@ -53,6 +53,13 @@ class Measure:
                                 **self.sweep(cell, graph, kernel, widths, work)["widths"]}
             return result
 
+    def pruned_then_default(self, cell, flags, kernel):
+        """Trajectory errors after pruning, and a robust kernel at its own width."""
+        with work_folder() as folder:
+            work = pathlib.Path(folder)
+            self.prune(cell, flags, work)
+            return self.optimum(cell, work / "pruned.g2o", ("--kernel", kernel), work)
+
     def reference(self, cell):
         """Trajectory errors of odometry, of all loops, and of the correct ones."""
         with work_folder() as folder:
@@ -63,11 +70,13 @@ class Measure:
             result["odometry"] = self.errors(cell, work / "odometry.g2o", work)
             return result
 
+    def prune(self, cell, flags, work):
+        return self.command.run("prune", cell.graph, *flags, "-o", work / "pruned.g2o",
+                                "--verdicts", work / "verdicts.csv")
+
     def pruned(self, cell, flags, work):
-        verdicts = work / "verdicts.csv"
-        usage = self.command.run("prune", cell.graph, *flags, "-o", work / "pruned.g2o",
-                                 "--verdicts", verdicts)
-        quality = self.command.json(work, "eval", "loops", verdicts, cell.labels)
+        usage = self.prune(cell, flags, work)
+        quality = self.command.json(work, "eval", "loops", work / "verdicts.csv", cell.labels)
         return {"seconds": usage.ru_utime,
                 **{key: quality[key] for key in ("precision", "recall", "f1")}}
 
@@ -95,14 +104,18 @@ def mean(values):
     return sum(known) / len(known) if known else math.nan
 
 
+def as_measured(result):
+    return result
+
+
 def without_kernel(result):
     return result["widths"]["0"]
 
 
-def with_best_width(result):
+def with_best_width(result, key="ate"):
     """At the width with the lowest ATE: the paper's rule, which uses the truth."""
     return min((errors for width, errors in result["widths"].items() if width != "0"),
-               key=lambda errors: errors["ate"])
+               key=lambda errors: errors[key])
 
 
 # What Table II compares: method, and how its errors are picked.
@@ -113,14 +126,23 @@ BICOCCA_COLUMNS = {
     "Cauchy": ("cauchy", with_best_width),
     "heat (Lap-line) + DCS": ("heat (Lap-line) + DCS", with_best_width),
     "heat (χ²) + DCS": ("heat (χ²) + DCS", with_best_width),
+    "heat (χ²) + Cauchy": ("heat (χ²) + Cauchy", as_measured),
     "consensus": ("consensus", without_kernel),
     "consensus + DCS": ("consensus", with_best_width),
+    "consensus + Cauchy": ("consensus + Cauchy", as_measured),
 }
+CONSENSUS = [name for name in BICOCCA_COLUMNS if name.startswith("consensus")]
+NOT_THE_PAPERS = "heat (χ²) + Cauchy"
 
 
 def bicocca_error(results, extent, style, kind, count, column, key):
     """The mean error of a column of Table II over the seeds; nan where not measured."""
     method, pick = BICOCCA_COLUMNS[column]
+    return mean([pick(result)[key]
+                 for result in bicocca_results(results, extent, style, kind, count, method)])
+
+
+def bicocca_results(results, extent, style, kind, count, method):
     seeds = (1,) if style == "file" else extent.seeds
     found = [results.get(f"table2/{style}/{kind}/{count}/{seed}/{method}") for seed in seeds]
-    return mean([pick(result)[key] for result in found if result is not None])
+    return [result for result in found if result is not None]

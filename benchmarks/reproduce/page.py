@@ -3,7 +3,8 @@
 import math
 
 from cells import TYPES
-from methods import BICOCCA_COLUMNS, PRUNING, bicocca_error, mean
+from methods import (BICOCCA_COLUMNS, CONSENSUS, NOT_THE_PAPERS, PRUNING, bicocca_error,
+                     bicocca_results, mean, with_best_width)
 from plan import COMBINED, KITTI, PRINTED_COUNTS
 from printed import TABLE1, TABLE2
 
@@ -130,10 +131,8 @@ class Page:
         return table(header, rows)
 
     def verdicts(self, style, kind, count, method, key):
-        seeds = (1,) if style == "file" else self.extent.seeds
-        found = [self.results.get(f"table2/{style}/{kind}/{count}/{seed}/{method}")
-                 for seed in seeds]
-        return mean([result[key] for result in found if result is not None])
+        return mean([result[key] for result in bicocca_results(
+            self.results, self.extent, style, kind, count, method)])
 
     # What the tables say
 
@@ -149,17 +148,40 @@ class Page:
                 sum(heat[cell] >= printed[cell] - 0.005 for cell in cells))
 
     def table2_wins(self, style, counts):
-        """Cells of Table II, and cells where consensus, alone or with DCS, is the best by
-        aligned RMSE or tied with it."""
+        """Cells of Table II, and cells where consensus, alone or with a kernel, is the best
+        by aligned RMSE or tied with it: of the paper's methods, and of all."""
         names = list(BICOCCA_COLUMNS)
-        wins = cells = 0
+        wins = wins_of_all = cells = 0
         for count in counts:
             for kind in TYPES:
                 errors = dict(zip(names, self.bicocca_errors(style, kind, count, "rmse")))
-                ours = min(errors["consensus"], errors["consensus + DCS"])
+                ours = min(errors[name] for name in CONSENSUS)
+                lowest = min(error for name, error in errors.items() if name != NOT_THE_PAPERS)
                 cells += 1
-                wins += ours <= TIE * min(errors.values())
-        return cells, wins
+                wins += ours <= TIE * lowest
+                wins_of_all += ours <= TIE * min(lowest, errors[NOT_THE_PAPERS])
+        return cells, wins, wins_of_all
+
+    def table2_range(self, column):
+        """Least and largest aligned RMSE of a column over all cells of Table II."""
+        errors = [bicocca_error(self.results, self.extent, *cell, column, "rmse")
+                  for cell in self.table2_cells()]
+        return min(errors), max(errors)
+
+    def hindsight_range(self, method):
+        """The same at the width with the lowest RMSE."""
+        errors = [mean([with_best_width(result, "rmse")["rmse"] for result in bicocca_results(
+            self.results, self.extent, *cell, method)]) for cell in self.table2_cells()]
+        return min(errors), max(errors)
+
+    def table2_cells(self):
+        return [(style, kind, count) for style, counts in self.table2_parts()
+                for count in counts for kind in TYPES]
+
+    def table2_parts(self):
+        """Styles of Table II, and the numbers of outliers in each."""
+        return [("file", (44, 178)),
+                *((style, self.printed_counts()) for style in self.extent.styles)]
 
     def printed_counts(self):
         return [count for count in PRINTED_COUNTS if count in self.extent.counts()]

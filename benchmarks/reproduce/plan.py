@@ -37,6 +37,7 @@ COMBINED = {
     "heat (χ²) + DCS": HEAT,
     "consensus": ("--method", "consensus"),
 }
+FINISHED_BY_CAUCHY = {"heat (χ²) + Cauchy": HEAT, "consensus + Cauchy": ("--method", "consensus")}
 
 
 def kitti_tasks(graphs, measure, extent):
@@ -93,6 +94,10 @@ def bicocca_tasks(graphs, measure, extent):
         for key, cell in cells.items():
             tasks[f"table2/{key}/{name}"] = lambda cell=cell, f=flags: \
                 measure.pruned_then_kernel(cell(), f, "dcs", extent.finishing_widths)
+    for name, flags in FINISHED_BY_CAUCHY.items():
+        for key, cell in cells.items():
+            tasks[f"table2/{key}/{name}"] = lambda cell=cell, f=flags: \
+                measure.pruned_then_default(cell(), f, "cauchy")
     return tasks
 
 
