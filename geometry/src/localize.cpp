@@ -75,7 +75,7 @@ class Localization {
       const bool noise_changed = update_noise();
       bool changed = false;
       for (std::size_t k = 0; k < use_.size(); ++k) {
-        const bool keep = checks_[k].checked && (keeps_untested(k) || checks_[k].chi2 <= gate_);
+        const bool keep = checks_[k].checked && (keeps_untested(k) || fits(k));
         // Late rounds only remove, so that they end.
         if (keep == use_[k] || (keep && round > kMostRounds / 2)) continue;
         use_[k] = keep;
@@ -90,6 +90,13 @@ class Localization {
     return std::find(given.begin(), given.end(), false) == given.end();
   }
 
+  // A range that was left out has to be likely where it is predicted, not only possible: of
+  // a node that hardly anything else holds any length would be.
+  bool fits(std::size_t k) const {
+    const auto& check = checks_[k];
+    return check.chi2 - (use_[k] ? 0.0 : std::log(check.redundancy)) <= gate_;
+  }
+
   bool keeps_untested(std::size_t k) const { return use_[k] && !checks_[k].is_tested(); }
 
   // Scales the standard deviations so that the median deviation of the kept ranges
@@ -100,14 +107,16 @@ class Localization {
       if (given && !options_.estimate_noise) continue;
       const double factor = noise_factor(given);
       if (given) result_.noise_factor *= factor;
+      std::vector<bool> scaled(problem_.pairs.size(), false);
       for (std::size_t k = 0; k < problem_.sigmas.size(); ++k) {
-        if (problem_.sigma_given[k] == given) problem_.sigmas[k] *= factor;
+        if (problem_.sigma_given[k] != given) continue;
+        problem_.sigmas[k] *= factor;
+        const auto pair = static_cast<std::size_t>(problem_.pair_of[k]);
+        if (!scaled[pair]) problem_.pairs[pair].sigma *= factor;
+        scaled[pair] = true;
       }
       for (std::size_t k = 0; k < checks_.size(); ++k) {
         if (problem_.sigma_given[k] == given) checks_[k].chi2 /= factor * factor;
-      }
-      for (auto& pair : problem_.pairs) {
-        if (given == problem_.sigma_given.front()) pair.sigma *= factor;
       }
       changed = changed || std::abs(std::log(factor)) > 0.05;
     }
@@ -116,7 +125,6 @@ class Localization {
 
   double noise_factor(bool given) const {
     constexpr double kMedianOfNormal = 0.6745;
-    constexpr double kFloor = 1e-10;  // of the typical distance: exact ranges
     std::vector<double> deviations;
     double largest = 0.0;
     for (std::size_t k = 0; k < checks_.size(); ++k) {
@@ -130,7 +138,22 @@ class Localization {
     const std::size_t enough = given ? 10 : 3;
     if (deviations.size() < enough) return 1.0;
     const double factor = detail::lower_median(std::move(deviations)) / kMedianOfNormal;
-    return std::max(factor, kFloor * problem_.typical_distance / largest);
+    return std::max(factor, finest_noise(given) / largest);
+  }
+
+  // Least standard deviation that ranges can be found to have: exact ones in arithmetic that is
+  // not, and not so far below the others that the system of equations loses these.
+  double finest_noise(bool given) const {
+    constexpr double kOfDistance = 1e-10;
+    constexpr double kOfOthers = 1e-3;
+    double finest = kOfDistance * problem_.typical_distance;
+    std::vector<double> others;
+    for (std::size_t k = 0; k < problem_.sigmas.size(); ++k) {
+      if (problem_.sigma_given[k] != given) others.push_back(problem_.sigmas[k]);
+    }
+    if (!others.empty())
+      finest = std::max(finest, kOfOthers * detail::lower_median(std::move(others)));
+    return finest;
   }
 
   // Nodes without one place lose it, and so do those that hung on them.

@@ -113,6 +113,28 @@ TEST(Localize, FalseRangesHardlyMoveTheNodes) {
   EXPECT_LT(std::sqrt(ours), 1.5 * std::sqrt(theirs));
 }
 
+TEST(Localize, RangesThatAreTooLongLeaveMostNodesOfASparseNetwork) {
+  const auto simulated = simulate_network(
+      {.nodes = 200, .degree = 13.0, .noise = 0.03, .biased_fraction = 0.2, .seed = 4});
+  const auto result = localize(simulated.network);
+  EXPECT_GE(result.count(NodeStatus::localised), 100);
+  EXPECT_LT(largest_error(result, simulated.truth), 0.5 * simulated.radius);
+}
+
+TEST(Localize, ExactRangesAndNoisyOnesHaveNoiseOfTheirOwn) {
+  auto simulated = simulate_network({.nodes = 60, .degree = 25.0, .noise = 0.05, .seed = 2});
+  for (std::size_t k = 0; k < simulated.network.ranges.size(); k += 5) {
+    auto& range = simulated.network.ranges[k];
+    range.distance = (simulated.truth.col(range.from) - simulated.truth.col(range.to)).norm();
+    range.variance = 0.0;
+  }
+  const auto result = localize(simulated.network);
+  EXPECT_GE(result.count(NodeStatus::localised), 35);
+  EXPECT_LT(result.sigma, 0.01 * simulated.radius);
+  EXPECT_NEAR(result.noise_factor, 1.0, 0.3);
+  EXPECT_LT(largest_error(result, simulated.truth), 0.2 * simulated.radius);
+}
+
 TEST(Localize, WhatHangsOnTwoNodesIsMirrored) {
   // Two complete graphs of five nodes share nodes 3 and 4; the anchors are in the first.
   Eigen::MatrixXd truth(2, 8);

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "isotherm/base/parallel.hpp"
+#include "localize/crowd.hpp"
+#include "localize/evidence.hpp"
+#include "localize/hinge_parts.hpp"
 #include "localize/mirror_image.hpp"
 #include "localize/multilateration.hpp"
-#include "localize/placing.hpp"
 #include "localize/seeds.hpp"
 #include "localize/star.hpp"
 
@@ -15,6 +18,9 @@ namespace isotherm::geometry::detail {
 namespace {
 
 using Nodes = std::vector<Index>;
+
+// Of what makes a place clearly the best, what one range may bring where a body spreads.
+constexpr double kOneRange = 0.7;
 
 // Sets of firm nodes at the places they have.
 class Firmness {
@@ -26,8 +32,11 @@ class Firmness {
         gate_(gate),
         options_(options),
         placement_(placement),
-        limit_(outlier_cost(problem, trusted, placement, gate)),
-        clear_(-2.0 * std::log(options.mirror_chance)) {}
+        evidence_(learn_evidence(problem, trusted, gate, placement)),
+        crowd_(problem, placement, evidence_.absence),
+        clear_(-2.0 * std::log(options.mirror_chance)),
+        strict_{std::min(evidence_.limits.apart, kOneRange * clear_),
+                std::min(evidence_.limits.close, kOneRange * clear_)} {}
 
   std::vector<bool> run() const {
     // Without anchors a simplex may be mirrored as it is.
@@ -38,14 +47,17 @@ class Firmness {
     for (std::size_t base = 0; base < bodies.size(); ++base) absorb(bodies[base], bodies);
     if (problem_.anchored()) {
       auto frame = with(anchors());
-      auto firm = spread(frame, anchors());
+      auto firm = spread(frame, anchors(), strict_, {});
       absorb(firm, bodies);
-      return still_firm(firm);
+      return complete(std::move(firm), bodies);
     }
     const auto largest =
         std::max_element(bodies.begin(), bodies.end(),
                          [](const Nodes& a, const Nodes& b) { return a.size() < b.size(); });
-    return largest == bodies.end() ? none().placed : still_firm(*largest);
+    if (largest == bodies.end()) return none().placed;
+    auto firm = std::move(*largest);
+    largest->clear();
+    return complete(std::move(firm), bodies);
   }
 
  private:
@@ -67,14 +79,38 @@ class Firmness {
     return placement;
   }
 
-  // Without the nodes that have two places among all the others, now that these are known.
-  std::vector<bool> still_firm(const Nodes& body) const {
-    const auto firm = with(body);
+  // With the nodes in none of the bodies that a single range puts in one place, and without
+  // those that have two places among all the others, now that these are known. What is part of a
+  // body comes and goes with it: node by node a part creeps over a hinge that it turns on.
+  std::vector<bool> complete(Nodes body, const std::vector<Nodes>& bodies) const {
+    std::vector<bool> bound(problem_.nodes, false);
+    for (const auto& other : bodies) {
+      for (const Index v : other) bound[v] = true;
+    }
+    auto firm = with(body);
+    const auto all = spread(firm, std::move(body), evidence_.limits, bound);
+    release_turning_parts(firm);
     auto result = firm.placed;
-    for (const Index v : body) {
-      if (!problem_.is_anchor[v]) result[v] = has_one_place(firm, v);
+    for (const Index v : all) {
+      if (problem_.is_anchor[v] || !result[v]) continue;
+      result[v] = has_one_place(firm, v, evidence_.limits);
     }
     return result;
+  }
+
+  // Takes out the parts that may turn on a hinge.
+  void release_turning_parts(Placement& firm) const {
+    std::set<Nodes> seen;
+    for (Index v = 0; v < problem_.nodes; ++v) {
+      if (!firm.placed[v]) continue;
+      for (const auto& part : parts_behind(problem_, trusted_, firm.placed, v)) {
+        if (!seen.insert(part).second) continue;
+        auto rest = firm;
+        for (const Index w : part) rest.placed[w] = problem_.is_anchor[w];
+        if (is_fixed(part, rest)) continue;
+        for (const Index w : part) firm.placed[w] = problem_.is_anchor[w];
+      }
+    }
   }
 
   // Adds to one body those of `others` that are fixed to it, and what they bring, as long
@@ -91,7 +127,7 @@ class Firmness {
           if (!firm.placed[v]) fresh.push_back(v);
           firm.placed[v] = true;
         }
-        const auto added = spread(firm, std::move(fresh));
+        const auto added = spread(firm, std::move(fresh), strict_, {});
         body.insert(body.end(), added.begin(), added.end());
         other.clear();
         any = true;
@@ -103,38 +139,49 @@ class Firmness {
   bool is_fixed(const Nodes& body, const Placement& firm) const {
     auto inside = body;
     std::sort(inside.begin(), inside.end());
-    std::vector<Tie> ties;
+    TiedBody tied;
+    auto& ties = tied.ties;
+    std::vector<Index> outside;
     const double sigma = lower_median(problem_.sigmas);
     const int d = problem_.dimension;
     for (const Index v : body) {
       if (firm.placed[v]) {
         // The place of an anchor cannot be at fault, only the ranges that tie it to the body.
-        const double limit = (problem_.is_anchor[v] ? d + 1 : 1) * limit_;
+        const double limit = (problem_.is_anchor[v] ? d + 1 : 1) * evidence_.limits.apart;
         ties.push_back(
-            {placement_.positions.col(v), placement_.positions.col(v), 0.0, sigma, limit});
+            {placement_.positions.col(v), placement_.positions.col(v), 0.0, sigma, {limit, limit}});
         continue;
       }
+      outside.push_back(v);
+      tied.points.push_back(placement_.positions.col(v));
       for (const auto& [vertex, edge] : problem_.pair_graph.neighbours(v)) {
         if (!trusted_[edge] || !firm.placed[vertex]) continue;
         if (std::binary_search(inside.begin(), inside.end(), vertex)) continue;
         const auto& pair = problem_.pairs[edge];
         ties.push_back({placement_.positions.col(v), placement_.positions.col(vertex),
-                        pair.distance, pair.sigma, limit_});
+                        pair.distance, pair.sigma, evidence_.limits});
       }
     }
-    return holds(ties);
+    return holds(tied, [&](const std::vector<Point>& places) {
+      double cost = 0.0;
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        cost += crowd_.absence_cost(outside[k], places[k], firm.placed);
+      }
+      return cost;
+    });
   }
 
-  bool holds(const std::vector<Tie>& ties) const {
+  bool holds(const TiedBody& body, const PointsCost& points_cost) const {
     const int d = problem_.dimension;
     int held = 0;  // coordinates, as far as ranges agree
     double cost = 0.0;
-    for (const auto& tie : ties) {
+    for (const auto& tie : body.ties) {
       cost += tie.cost();
-      if (tie.cost() <= std::min(gate_, 0.999 * tie.limit)) held += tie.distance == 0.0 ? d : 1;
+      if (tie.cost() <= std::min(gate_, 0.999 * tie.limit())) held += tie.distance == 0.0 ? d : 1;
     }
     if (held <= d * (d + 1) / 2 + 1) return false;
-    return mirror_image_cost(ties) - cost >= clear_;
+    cost += points_cost(body.points);
+    return mirror_image_cost(body, points_cost, cost + clear_) - cost >= clear_;
   }
 
   // What can be reached from each clique, the largest first.
@@ -146,7 +193,7 @@ class Firmness {
                                      [&](Index v) { return covered[v]; });
       if (known) continue;
       auto firm = with(seed.members);
-      bodies.push_back(spread(firm, seed.members));
+      bodies.push_back(spread(firm, seed.members, strict_, {}));
       for (const Index v : bodies.back()) covered[v] = true;
     }
     std::stable_sort(bodies.begin(), bodies.end(),
@@ -165,23 +212,25 @@ class Firmness {
   }
 
   // Adds the nodes that are firm thanks to those in `firm`, of which `fresh` are new, and
-  // so on. All of them.
-  Nodes spread(Placement& firm, Nodes fresh) const {
+  // so on; not those that are `bound`. All of them.
+  Nodes spread(Placement& firm, Nodes fresh, const Limits& limits,
+               const std::vector<bool>& bound) const {
     Nodes all = fresh;
     while (!fresh.empty()) {
       Nodes near;
       for (const Index v : fresh) {
         for (const auto& [vertex, edge] : problem_.pair_graph.neighbours(v)) {
-          if (trusted_[edge] && placement_.placed[vertex] && !firm.placed[vertex])
-            near.push_back(vertex);
+          if (!trusted_[edge] || !placement_.placed[vertex] || firm.placed[vertex]) continue;
+          if (bound.empty() || !bound[vertex]) near.push_back(vertex);
         }
       }
       std::sort(near.begin(), near.end());
       near.erase(std::unique(near.begin(), near.end()), near.end());
       std::vector<char> has_one(near.size(), 0);
       parallel_for(static_cast<std::int64_t>(near.size()), options_.threads, options_.progress,
-                   "determinacy",
-                   [&](std::int64_t k) { has_one[k] = has_one_place(firm, near[k]) ? 1 : 0; });
+                   "determinacy", [&](std::int64_t k) {
+                     has_one[k] = has_one_place(firm, near[k], limits) ? 1 : 0;
+                   });
       fresh.clear();
       for (std::size_t k = 0; k < near.size(); ++k) {
         if (has_one[k] != 0) fresh.push_back(near[k]);
@@ -193,14 +242,21 @@ class Firmness {
   }
 
   // Whether the node's place among the firm ones is clearly the best.
-  bool has_one_place(const Placement& firm, Index node) const {
+  bool has_one_place(const Placement& firm, Index node, const Limits& limits) const {
     auto network = star(problem_, firm, node, trusted_);
-    if (network.fixed <= problem_.dimension) return false;
-    const auto found = multilaterate(network, limit_);
+    if (network.fixed <= problem_.dimension || is_in_the_way(node)) return false;
+    crowd_.add_strangers(network, node, firm.placed);
+    const auto found = multilaterate(network, limits);
     if (!found || found->rival_cost - found->cost < clear_) return false;
     network.positions.col(network.fixed) = placement_.positions.col(node);
     return 2 * agreeing(network, gate_) > static_cast<int>(network.ranges.size()) &&
-           truncated_cost(network, limit_) - found->cost < 0.5 * clear_;
+           place_cost(network, limits) - found->cost < 0.5 * clear_;
+  }
+
+  // Whether the node stands among others that it should have ranges to: it, or these, lie on
+  // the wrong side of a fold.
+  bool is_in_the_way(Index node) const {
+    return crowd_.absence_cost(node, placement_.positions.col(node), placement_.placed) > clear_;
   }
 
   const RangeProblem& problem_;
@@ -208,8 +264,10 @@ class Firmness {
   double gate_;
   const LocalizeOptions& options_;
   const Placement& placement_;
-  double limit_;
+  Evidence evidence_;
+  Crowd crowd_;
   double clear_;
+  Limits strict_;  // with which no single range decides
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "isotherm/base/parallel.hpp"
+#include "localize/crowd.hpp"
 #include "localize/multilateration.hpp"
 #include "localize/refine.hpp"
 #include "localize/robust_refine.hpp"
@@ -39,12 +40,14 @@ struct Offer {
 class Growth {
  public:
   Growth(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
-         const LocalizeOptions& options, Placement placement)
+         const Evidence& evidence, const LocalizeOptions& options, Placement placement)
       : problem_(problem),
         trusted_(trusted),
         gate_(gate),
+        evidence_(evidence),
         options_(options),
         placement_(std::move(placement)),
+        crowd_(problem, placement_, evidence.absence),
         offers_(problem.nodes),
         stale_(problem.nodes, true),
         tried_(problem.nodes, false),
@@ -90,7 +93,8 @@ class Growth {
   std::optional<Offer> offer_for(Index node) const {
     auto network = star(problem_, placement_, node, trusted_);
     if (network.fixed < problem_.dimension) return std::nullopt;
-    auto places = multilaterate(network, gate_);
+    crowd_.add_strangers(network, node, placement_.placed);
+    auto places = multilaterate(network, evidence_.limits);
     if (!places) return std::nullopt;
     network.positions.col(network.fixed) = places->position;
     const int agree = agreeing(network, gate_);
@@ -131,6 +135,7 @@ class Growth {
   void place(Index node, const Point& position) {
     placement_.positions.col(node) = position;
     placement_.placed[node] = true;
+    crowd_.insert(node, position);
     recent_.push_back(node);
     ++size_;
     for (const auto& [vertex, edge] : problem_.pair_graph.neighbours(node)) {
@@ -204,6 +209,7 @@ class Growth {
         problem_, use, placement_,
         {.width = std::sqrt(gate_), .max_iterations = kIterations, .progress = options_.progress});
     drop_contradicted();
+    crowd_.rebuild(placement_);
     settled_size_ = size_;
     stale_.assign(problem_.nodes, true);
   }
@@ -225,8 +231,10 @@ class Growth {
   const RangeProblem& problem_;
   const std::vector<bool>& trusted_;
   double gate_;
+  const Evidence& evidence_;
   const LocalizeOptions& options_;
   Placement placement_;
+  Crowd crowd_;
   std::vector<std::optional<Offer>> offers_;  // one a node
   std::vector<bool> stale_;                   // whose offer has to be made anew
   std::vector<bool> tried_;                   // whose two places led to nothing
@@ -239,8 +247,9 @@ class Growth {
 }  // namespace
 
 void grow(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
-          const LocalizeOptions& options, Placement& placement, Index limit) {
-  Growth growth(problem, trusted, gate, options, placement);
+          const Evidence& evidence, const LocalizeOptions& options, Placement& placement,
+          Index limit) {
+  Growth growth(problem, trusted, gate, evidence, options, placement);
   growth.run(limit);
   placement = growth.placement();
 }

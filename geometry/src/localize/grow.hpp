@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "isotherm/geometry/localize.hpp"
+#include "localize/evidence.hpp"
 #include "localize/range_problem.hpp"
 
 namespace isotherm::geometry::detail {
@@ -18,7 +19,7 @@ namespace isotherm::geometry::detail {
 /// range measurements", 2004), with a robust estimate in place of the quad.
 /// Ends where nothing is left to place, or with the wave that reaches `limit` nodes.
 void grow(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
-          const LocalizeOptions& options, Placement& placement,
+          const Evidence& evidence, const LocalizeOptions& options, Placement& placement,
           Index limit = std::numeric_limits<Index>::max());
 
 }  // namespace isotherm::geometry::detail

@@ -14,8 +14,8 @@ namespace {
 class Nursery {
  public:
   Nursery(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
-          const LocalizeOptions& options)
-      : problem_(problem), trusted_(trusted), gate_(gate), options_(options) {}
+          const Evidence& evidence, const LocalizeOptions& options)
+      : problem_(problem), trusted_(trusted), gate_(gate), evidence_(evidence), options_(options) {}
 
   // Maps grown from seeds until there is none outside them, the largest first.
   std::vector<Placement> run() const {
@@ -48,7 +48,7 @@ class Nursery {
       if (maps.size() == kMost) break;
       maps.push_back(place_nodes(problem_, seed.members, seed.positions));
       for (const Index v : seed.members) covered[v] = true;
-      grow(problem_, trusted_, gate_, options_, maps.back(), kSize);
+      grow(problem_, trusted_, gate_, evidence_, options_, maps.back(), kSize);
     }
     return maps;
   }
@@ -69,8 +69,8 @@ class Nursery {
     double best_credit = 0.0;
     for (std::size_t k = 0; k < std::min(kFinalists, order.size()); ++k) {
       auto& map = maps[order[k].second];
-      grow(problem_, trusted_, gate_, options_, map);
-      refine_robustly(problem_, map, gate_, options_);
+      grow(problem_, trusted_, gate_, evidence_, options_, map);
+      refine_robustly(problem_, trusted_, gate_, options_, map);
       const double credit = agreement(problem_, trusted_, gate_, map).credit;
       if (!best.placed.empty() && credit <= best_credit) continue;
       best = std::move(map);
@@ -82,14 +82,16 @@ class Nursery {
   const RangeProblem& problem_;
   const std::vector<bool>& trusted_;
   double gate_;
+  const Evidence& evidence_;
   const LocalizeOptions& options_;
 };
 
 }  // namespace
 
 std::vector<Placement> grown_parts(const RangeProblem& problem, const std::vector<bool>& trusted,
-                                   double gate, const LocalizeOptions& options) {
-  return Nursery(problem, trusted, gate, options).run();
+                                   double gate, const Evidence& evidence,
+                                   const LocalizeOptions& options) {
+  return Nursery(problem, trusted, gate, evidence, options).run();
 }
 
 }  // namespace isotherm::geometry::detail

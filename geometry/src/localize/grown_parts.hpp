@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "isotherm/geometry/localize.hpp"
+#include "localize/evidence.hpp"
 #include "localize/range_problem.hpp"
 
 namespace isotherm::geometry::detail {
@@ -11,6 +12,7 @@ namespace isotherm::geometry::detail {
 /// there are a dozen; the largest first. Each is the best of several that were started in
 /// different places: a map that folds early on stays folded.
 std::vector<Placement> grown_parts(const RangeProblem& problem, const std::vector<bool>& trusted,
-                                   double gate, const LocalizeOptions& options);
+                                   double gate, const Evidence& evidence,
+                                   const LocalizeOptions& options);
 
 }  // namespace isotherm::geometry::detail

@@ -5,10 +5,13 @@
 #include "isotherm/spectral/judge_edges.hpp"
 #include "localize/agreement.hpp"
 #include "localize/anchor_frame.hpp"
+#include "localize/crowd.hpp"
+#include "localize/evidence.hpp"
 #include "localize/firmness.hpp"
 #include "localize/grow.hpp"
 #include "localize/grown_parts.hpp"
 #include "localize/patch.hpp"
+#include "localize/path_map.hpp"
 #include "localize/placing.hpp"
 #include "localize/robust_refine.hpp"
 #include "localize/stitch.hpp"
@@ -28,19 +31,44 @@ class Start {
         gate_(gate),
         options_(options) {
     free_.is_anchor.assign(problem.nodes, false);
+    patches_ = make_patches(free_, trusted_, options_);
+    evidence_ = learn_evidence(free_, trusted_, gate_, patches_);
+  }
+
+  // On which side ranges err, as far as the local maps tell.
+  Errors errors() const {
+    constexpr double kClear = 3.0;  // a fifth of the others, in chi-squared
+    const auto& limits = evidence_.limits;
+    return limits.apart > limits.close + kClear ? Errors::too_long : Errors::any;
+  }
+
+  // Shortest paths, in one go.
+  std::vector<Placement> by_paths() const {
+    return {map_by_paths(free_, trusted_, evidence_.absence, errors(), gate_, options_)};
   }
 
   std::vector<Placement> stitched() const {
     std::vector<Placement> parts;
-    for (const auto& part : stitch(free_, make_patches(free_, trusted_, options_))) {
+    for (const auto& part : stitch(free_, patches_)) {
       parts.push_back(place_nodes(problem_, part.nodes, part.positions));
       if (options_.method != LocalizeMethod::robust) continue;
-      refine_robustly(free_, parts.back(), gate_, options_);
+      refine_robustly(free_, trusted_, gate_, options_, parts.back());
     }
     return parts;
   }
 
-  std::vector<Placement> grown() const { return grown_parts(free_, trusted_, gate_, options_); }
+  // The largest part, with its folds opened.
+  std::vector<Placement> stitched_and_unfolded() const {
+    const auto parts = stitch(free_, patches_);
+    if (parts.empty()) return {};
+    auto map = place_nodes(problem_, parts.front().nodes, parts.front().positions);
+    unfold(free_, trusted_, evidence_.absence, errors(), gate_, options_, map);
+    return {std::move(map)};
+  }
+
+  std::vector<Placement> grown() const {
+    return grown_parts(free_, trusted_, gate_, evidence_, options_);
+  }
 
   // Parts in the frame of the anchors; without anchors, the largest only.
   Placement together(std::vector<Placement> parts) const {
@@ -60,9 +88,9 @@ class Start {
   // Nodes outside the parts, from those that have a place.
   void complete(Placement& placement) const {
     if (placed_count(placement) == 0) return;
-    grow(problem_, trusted_, gate_, options_, placement);
-    place_more(problem_, gate_, placement);
-    refine_robustly(problem_, placement, gate_, options_);
+    grow(problem_, trusted_, gate_, evidence_, options_, placement);
+    place_more(problem_, gate_, evidence_, placement);
+    refine_robustly(problem_, trusted_, gate_, options_, placement);
   }
 
   // A placement with those of its nodes that are firm, and how well these fit.
@@ -78,8 +106,15 @@ class Start {
     result.firm = placement;
     result.firm.placed = firm_nodes(problem_, trusted_, gate_, options_, placement);
     result.all = std::move(placement);
-    result.credit = agreement(problem_, trusted_, gate_, result.firm).credit;
+    result.credit = agreement(problem_, trusted_, gate_, result.firm).credit -
+                    absence_cost(problem_, evidence_.absence, result.firm);
     return result;
+  }
+
+  // Of a candidate and the one that some parts make, that of which more is explained.
+  Candidate better(Candidate best, std::vector<Placement> parts) const {
+    auto rival = candidate(together(std::move(parts)));
+    return rival.credit > best.credit ? std::move(rival) : std::move(best);
   }
 
   // Places anew what is not firm, as long as more becomes so.
@@ -100,6 +135,8 @@ class Start {
   const std::vector<bool>& trusted_;
   double gate_;
   const LocalizeOptions& options_;
+  std::vector<Patch> patches_;
+  Evidence evidence_;
 };
 
 }  // namespace
@@ -126,17 +163,18 @@ Placement place_initially(const RangeProblem& problem, const Placement& anchors,
   const Start start(problem, anchors, trusted, gate, options);
   auto stitched = start.together(start.stitched());
   if (options.method != LocalizeMethod::robust) {
-    place_more(problem, gate, stitched);
+    place_more(problem, gate, {{}, {gate, gate}}, stitched);
     return stitched;
   }
-  // A start of which this part is firm needs no rival.
-  constexpr double kGood = 0.95;
   auto best = start.candidate(std::move(stitched));
-  if (placed_count(best.firm) < kGood * problem.nodes) {
-    auto rival = start.candidate(start.together(start.grown()));
-    if (rival.credit > best.credit) best = std::move(rival);
-    best = start.repair(std::move(best));
-  }
+  // A start of which this part is firm needs no rival, or not the last one.
+  const auto is_firm = [&](double part) { return placed_count(best.firm) >= part * problem.nodes; };
+  constexpr double kGood = 0.95;
+  constexpr double kFair = 0.5;
+  if (!is_firm(kGood)) best = start.better(std::move(best), start.by_paths());
+  if (!is_firm(kGood)) best = start.better(std::move(best), start.stitched_and_unfolded());
+  if (!is_firm(kFair)) best = start.better(std::move(best), start.grown());
+  if (!is_firm(kGood)) best = start.repair(std::move(best));
   return std::move(best.all);
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <limits>
 #include <vector>
 
 #include "localize/small_network.hpp"
@@ -13,15 +15,27 @@ struct Tie {
   Point other;  ///< of the surroundings
   double distance = 0.0;
   double sigma = 1.0;
-  double limit = 0.0;  ///< most that it can cost, in chi-squared
+  Limits limits;  ///< most that it can cost
 
-  double cost() const;  ///< min(r^2, limit)
+  double cost() const;   ///< min(r^2, limit)
+  double limit() const;  ///< the limit that applies
 };
+
+/// A rigid body: what ties it, and more points of it.
+struct TiedBody {
+  std::vector<Tie> ties;
+  std::vector<Point> points = {};
+};
+
+/// What it costs, in chi-squared, that the points of a body are at these places.
+using PointsCost = std::function<double(const std::vector<Point>&)>;
 
 /// The least cost of a mirror image of the body among its surroundings: reflections in
 /// all lines (planes, in space) through d of the ends of ties (an even sample where there
-/// are many), each moved as a rigid body to where its ties fit best. Infinite for fewer
-/// than d ties. O(ties^(d + 1)).
-double mirror_image_cost(const std::vector<Tie>& ties);
+/// are many), the cheapest few moved as rigid bodies to where their ties fit best. What the
+/// places of the points cost is added unless the ties alone cost `enough`. Infinite for fewer
+/// than d ties. O(ties + points) a reflection.
+double mirror_image_cost(const TiedBody& body, const PointsCost& points_cost = {},
+                         double enough = std::numeric_limits<double>::infinity());
 
 }  // namespace isotherm::geometry::detail

@@ -92,7 +92,7 @@ std::vector<Candidate> meeting_points(const std::vector<Sphere>& spheres, int d)
 
 // Possible places of the last node, the cheapest first. Of very many ranges an even
 // sample makes them; all count in the cost.
-std::vector<Candidate> candidates(const SmallNetwork& network, double limit) {
+std::vector<Candidate> candidates(const SmallNetwork& network, const Limits& limits) {
   constexpr std::size_t kMostSpheres = 24;
   const int self = static_cast<int>(network.positions.cols()) - 1;
   std::vector<Sphere> spheres;
@@ -106,7 +106,7 @@ std::vector<Candidate> candidates(const SmallNetwork& network, double limit) {
   auto trial = network;
   for (auto& candidate : result) {
     trial.positions.col(self) = candidate.position;
-    candidate.cost = truncated_cost(trial, limit);
+    candidate.cost = place_cost(trial, limits);
   }
   std::stable_sort(result.begin(), result.end(),
                    [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
@@ -115,7 +115,7 @@ std::vector<Candidate> candidates(const SmallNetwork& network, double limit) {
 
 }  // namespace
 
-std::optional<Multilateration> multilaterate(SmallNetwork network, double limit) {
+std::optional<Multilateration> multilaterate(SmallNetwork network, const Limits& limits) {
   constexpr int kIterations = 8;
   const auto self = network.positions.cols() - 1;
   network.fixed = static_cast<int>(self);
@@ -126,7 +126,7 @@ std::optional<Multilateration> multilaterate(SmallNetwork network, double limit)
   const double apart = 4.0 * lower_median(std::move(sigmas));
 
   std::vector<Candidate> seeds;
-  for (const auto& candidate : candidates(network, limit)) {
+  for (const auto& candidate : candidates(network, limits)) {
     const bool fresh = std::none_of(seeds.begin(), seeds.end(), [&](const Candidate& seed) {
       return (seed.position - candidate.position).norm() < apart;
     });
@@ -135,8 +135,8 @@ std::optional<Multilateration> multilaterate(SmallNetwork network, double limit)
   }
   for (auto& seed : seeds) {
     network.positions.col(self) = seed.position;
-    fit_robustly(network, std::sqrt(limit), kIterations);
-    const double cost = truncated_cost(network, limit);
+    fit_robustly(network, std::sqrt(limits.least()), kIterations);
+    const double cost = place_cost(network, limits);
     if (cost < seed.cost) seed = {network.positions.col(self), cost};
   }
   if (seeds.empty()) return std::nullopt;

@@ -12,7 +12,7 @@ namespace isotherm::geometry::detail {
 /// worse the next best is.
 struct Multilateration {
   Point position;
-  double cost = 0.0;        ///< sum of min(r^2, limit) over the ranges
+  double cost = 0.0;        ///< as `place_cost` has it
   Point rival;              ///< the best place elsewhere
   double rival_cost = 0.0;  ///< infinite if there is none
 };
@@ -20,8 +20,8 @@ struct Multilateration {
 /// Places the last node of `network`, all others being fixed and all ranges leading
 /// to it. Every d of the ranges (an even sample where there are many) meet in two
 /// candidates; the cheapest are refined and compared. Nothing if there are fewer
-/// than d ranges or their far ends do not span a line (plane, in space). `limit` is
+/// than d ranges or their far ends do not span a line (plane, in space). `limits` are
 /// what a range that does not fit costs.
-std::optional<Multilateration> multilaterate(SmallNetwork network, double limit);
+std::optional<Multilateration> multilaterate(SmallNetwork network, const Limits& limits);
 
 }  // namespace isotherm::geometry::detail

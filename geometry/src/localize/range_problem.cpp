@@ -106,10 +106,19 @@ bool is_placed(const Placement& placement, const RangePair& pair) {
   return placement.placed[pair.from] && placement.placed[pair.to];
 }
 
-double squared_deviation(const Placement& placement, const RangePair& pair) {
+double deviation(const Placement& placement, const RangePair& pair) {
   const double length =
       (placement.positions.col(pair.from) - placement.positions.col(pair.to)).norm();
-  return std::pow((length - pair.distance) / pair.sigma, 2);
+  return (length - pair.distance) / pair.sigma;
+}
+
+double squared_deviation(const Placement& placement, const RangePair& pair) {
+  return std::pow(deviation(placement, pair), 2);
+}
+
+bool has_range(const RangeProblem& problem, Index a, Index b) {
+  const auto row = problem.pair_graph.neighbours(a);
+  return std::any_of(row.begin(), row.end(), [b](const auto& entry) { return entry.vertex == b; });
 }
 
 RangeProblem make_problem(const RangeNetwork& network) {

@@ -49,8 +49,14 @@ Index placed_count(const Placement& placement);
 /// Whether both ends have one.
 bool is_placed(const Placement& placement, const RangePair& pair);
 
-/// Squared difference of a pair's distance from that of its places, by its variance.
+/// (distance between the places of a pair - its range) / sigma.
+double deviation(const Placement& placement, const RangePair& pair);
+
+/// Its square.
 double squared_deviation(const Placement& placement, const RangePair& pair);
+
+/// Whether there is a range between two nodes. O(degree).
+bool has_range(const RangeProblem& problem, Index a, Index b);
 
 /// @throws InvalidArgument as `localize` does
 void check(const RangeNetwork& network);

@@ -14,20 +14,19 @@ namespace {
 
 using Factor = Eigen::CholmodDecomposition<spectral::SparseMatrix, Eigen::Lower>;
 
-// The used ranges as a damped least-squares problem in the free nodes.
+// The springs as a damped least-squares problem in the free nodes.
 class SparseSystem {
  public:
-  SparseSystem(const RangeProblem& problem, const std::vector<bool>& use, Placement& placement,
-               double width)
-      : problem_(problem), placement_(placement), kernel_{width} {
+  SparseSystem(const RangeProblem& problem, const std::vector<Spring>& springs,
+               Placement& placement)
+      : problem_(problem), placement_(placement) {
     factor_.cholmod().print = 0;
     first_row_.assign(problem.nodes, -1);
-    for (std::size_t k = 0; k < problem.ranges.size(); ++k) {
-      const auto& range = problem.ranges[k];
-      if (!use[k] || !placement.placed[range.from] || !placement.placed[range.to]) continue;
-      const bool from_free = number(range.from);
-      const bool to_free = number(range.to);
-      if (from_free || to_free) used_.push_back(k);
+    for (const auto& spring : springs) {
+      if (!placement.placed[spring.from] || !placement.placed[spring.to]) continue;
+      const bool from_free = number(spring.from);
+      const bool to_free = number(spring.to);
+      if (from_free || to_free) springs_.push_back(spring);
     }
   }
 
@@ -36,7 +35,7 @@ class SparseSystem {
   bool linearise() {
     entries_.clear();
     gradient_.setZero(unknowns_);
-    for (const auto k : used_) add_range(k);
+    for (const auto& spring : springs_) add(spring);
     matrix_.resize(unknowns_, unknowns_);
     matrix_.setFromTriplets(entries_.begin(), entries_.end());
     const double scale = matrix_.diagonal().mean();
@@ -64,7 +63,10 @@ class SparseSystem {
 
   double cost() const {
     double sum = 0.0;
-    for (const auto k : used_) sum += kernel_.loss(std::pow(term(k).residual, 2));
+    for (const auto& spring : springs_) {
+      const auto [slope, residual, kernel] = term(spring);
+      sum += kernel.loss(residual * residual);
+    }
     return sum;
   }
 
@@ -74,6 +76,7 @@ class SparseSystem {
   struct Term {
     Point slope;  // of the residual in the first end; minus that in the second
     double residual = 0.0;
+    GemanMcClure kernel;
   };
 
   // Gives a node its rows; false for an anchor.
@@ -86,23 +89,24 @@ class SparseSystem {
     return true;
   }
 
-  Term term(std::size_t k) const {
-    const auto& range = problem_.ranges[k];
-    const double sigma = problem_.sigmas[k];
-    const Point arm = placement_.positions.col(range.from) - placement_.positions.col(range.to);
+  Term term(const Spring& spring) const {
+    const Point arm = placement_.positions.col(spring.from) - placement_.positions.col(spring.to);
     const double length = arm.norm();
     // Where both ends coincide the distance has no derivative; any direction serves.
     const Point direction =
         length > 0.0 ? Point(arm / length) : Point(Point::Unit(problem_.dimension, 0));
-    return {direction / sigma, (length - range.distance) / sigma};
+    const double residual = (length - spring.distance) / spring.sigma;
+    return {direction / spring.sigma,
+            residual,
+            {residual > 0.0 ? spring.width_apart : spring.width_close}};
   }
 
-  void add_range(std::size_t k) {
-    const auto [slope, residual] = term(k);
-    const double weight = kernel_.weight(residual * residual);
+  void add(const Spring& spring) {
+    const auto [slope, residual, kernel] = term(spring);
+    const double weight = kernel.weight(residual * residual);
     const Block block = weight * slope * slope.transpose();
     const int d = problem_.dimension;
-    const Index ends[] = {first_row_[problem_.ranges[k].from], first_row_[problem_.ranges[k].to]};
+    const Index ends[] = {first_row_[spring.from], first_row_[spring.to]};
     for (int a = 0; a < 2; ++a) {
       if (ends[a] < 0) continue;
       gradient_.segment(ends[a], d) += (a == 0 ? weight : -weight) * residual * slope;
@@ -122,9 +126,8 @@ class SparseSystem {
 
   const RangeProblem& problem_;
   Placement& placement_;
-  GemanMcClure kernel_;
   std::vector<Index> first_row_;  // node -> first row, -1 if it does not move
-  std::vector<std::size_t> used_;
+  std::vector<Spring> springs_;
   Index unknowns_ = 0;
   std::vector<Eigen::Triplet<double, Index>> entries_;
   spectral::SparseMatrix matrix_;  // lower triangle
@@ -140,10 +143,22 @@ class SparseSystem {
 
 RefineOutcome refine(const RangeProblem& problem, const std::vector<bool>& use,
                      Placement& placement, const RefineOptions& options) {
+  std::vector<Spring> springs;
+  for (std::size_t k = 0; k < problem.ranges.size(); ++k) {
+    if (!use[k]) continue;
+    const auto& range = problem.ranges[k];
+    springs.push_back(
+        {range.from, range.to, range.distance, problem.sigmas[k], options.width, options.width});
+  }
+  return refine(problem, springs, placement, options);
+}
+
+RefineOutcome refine(const RangeProblem& problem, const std::vector<Spring>& springs,
+                     Placement& placement, const RefineOptions& options) {
   constexpr double kStillCost = 1e-8;  // relative decrease
   constexpr double kStillStep = 1e-6;  // of the typical standard deviation
   const double still_step = kStillStep * lower_median(problem.sigmas);
-  SparseSystem system(problem, use, placement, options.width);
+  SparseSystem system(problem, springs, placement);
   if (system.unknowns() == 0) return {};
   double damping = 1e-4;
   double cost = system.cost();

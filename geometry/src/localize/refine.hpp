@@ -8,6 +8,18 @@
 
 namespace isotherm::geometry::detail {
 
+/// A range between two nodes in a least-squares problem. A pair of widths, in standard
+/// deviations, of Geman and McClure's loss says how far off it may be: infinite is plain least
+/// squares, 0 no loss at all.
+struct Spring {
+  Index from = 0;
+  Index to = 0;
+  double distance = 0.0;
+  double sigma = 1.0;
+  double width_apart = std::numeric_limits<double>::infinity();  ///< ends farther than `distance`
+  double width_close = std::numeric_limits<double>::infinity();  ///< ends closer than that
+};
+
 struct RefineOptions {
   /// Width, in standard deviations, of Geman and McClure's loss; infinite for plain
   /// least squares.
@@ -25,6 +37,11 @@ struct RefineOutcome {
 /// in `use` between placed nodes: reweighted Levenberg-Marquardt steps with a sparse
 /// factorisation each. @throws Cancelled
 RefineOutcome refine(const RangeProblem& problem, const std::vector<bool>& use,
+                     Placement& placement, const RefineOptions& options);
+
+/// The same for the springs between placed nodes, which have widths of their own;
+/// `options.width` does not count.
+RefineOutcome refine(const RangeProblem& problem, const std::vector<Spring>& springs,
                      Placement& placement, const RefineOptions& options);
 
 }  // namespace isotherm::geometry::detail

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "localize/evidence.hpp"
 #include "localize/placing.hpp"
 
 namespace isotherm::geometry::detail {
@@ -65,8 +66,8 @@ std::vector<bool> ranges_within(const RangeProblem& problem, const Placement& pl
   return within;
 }
 
-RefineOutcome refine_robustly(const RangeProblem& problem, Placement& placement, double gate,
-                              const LocalizeOptions& options) {
+RefineOutcome refine_robustly(const RangeProblem& problem, const std::vector<bool>& trusted,
+                              double gate, const LocalizeOptions& options, Placement& placement) {
   constexpr int kStageIterations = 12;
   constexpr int kMostRounds = 5;
   constexpr double kMedianOfNormal = 0.6745;
@@ -78,7 +79,8 @@ RefineOutcome refine_robustly(const RangeProblem& problem, Placement& placement,
   }
   stages.fit(narrow, kStageIterations);
   for (int round = 0; round < kMostRounds; ++round) {
-    if (relocate(problem, gate, options, placement) == 0) break;
+    const auto evidence = learn_evidence(problem, trusted, gate, placement);
+    if (relocate(problem, gate, evidence, options, placement) == 0) break;
     stages.fit(narrow, kStageIterations);
   }
   return stages.total();

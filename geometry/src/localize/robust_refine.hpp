@@ -17,7 +17,7 @@ std::vector<bool> ranges_within(const RangeProblem& problem, const Placement& pl
 /// being left out of each stage (a false range between far nodes would fill the
 /// factorisation), then nodes in wrong places are moved and the fit repeated until
 /// none is.
-RefineOutcome refine_robustly(const RangeProblem& problem, Placement& placement, double gate,
-                              const LocalizeOptions& options);
+RefineOutcome refine_robustly(const RangeProblem& problem, const std::vector<bool>& trusted,
+                              double gate, const LocalizeOptions& options, Placement& placement);
 
 }  // namespace isotherm::geometry::detail

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "localize/absence.hpp"
 #include "localize/damped_step.hpp"
 #include "localize/range_problem.hpp"
 
@@ -35,7 +36,8 @@ Eigen::MatrixXd shortest_paths(const SmallNetwork& network) {
 
 double median_deviation(const SmallNetwork& network) {
   std::vector<double> deviations;
-  for (const auto& range : network.ranges) deviations.push_back(deviation(network, range));
+  for (const auto& range : network.ranges)
+    deviations.push_back(std::abs(deviation(network, range)));
   return lower_median(std::move(deviations));
 }
 
@@ -110,7 +112,7 @@ class DenseSystem {
 double deviation(const SmallNetwork& network, const SmallRange& range) {
   const double length =
       (network.positions.col(range.from) - network.positions.col(range.to)).norm();
-  return std::abs(length - range.distance) / range.sigma;
+  return (length - range.distance) / range.sigma;
 }
 
 bool place_by_scaling(SmallNetwork& network) {
@@ -158,11 +160,16 @@ void fit_robustly(SmallNetwork& network, double width, int max_iterations) {
   }
 }
 
-double truncated_cost(const SmallNetwork& network, double limit) {
+double place_cost(const SmallNetwork& network, const Limits& limits) {
   double cost = 0.0;
   for (const auto& range : network.ranges) {
     const double r = deviation(network, range);
-    cost += std::min(r * r, limit);
+    cost += std::min(r * r, limits(r));
+  }
+  if (network.absence == nullptr) return cost;
+  const Point place = network.positions.rightCols(1);
+  for (Eigen::Index k = 0; k < network.strangers.cols(); ++k) {
+    cost += network.absence->cost((network.strangers.col(k) - place).norm());
   }
   return cost;
 }

@@ -6,6 +6,8 @@
 
 namespace isotherm::geometry::detail {
 
+class Absence;
+
 /// A point or direction in the plane or in space, and a d x d block: no memory of
 /// their own to fetch.
 using Point = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1>;
@@ -24,9 +26,20 @@ struct SmallNetwork {
   Eigen::MatrixXd positions;  ///< dimension x nodes
   int fixed = 0;
   std::vector<SmallRange> ranges;
+  Eigen::MatrixXd strangers = {};    ///< places of nodes that the last node has no range to
+  const Absence* absence = nullptr;  ///< what that costs; null: nothing
 };
 
-/// |distance between the ends - range| / sigma.
+/// Most that a range can cost, in chi-squared: one that does not fit.
+struct Limits {
+  double apart = 0.0;  ///< its ends are farther from each other than the range
+  double close = 0.0;  ///< they are closer
+
+  double operator()(double residual) const { return residual > 0.0 ? apart : close; }
+  double least() const { return apart < close ? apart : close; }
+};
+
+/// (distance between the ends - range) / sigma.
 double deviation(const SmallNetwork& network, const SmallRange& range);
 
 /// Shortest-path distances between all nodes (Floyd and Warshall; infinite where
@@ -41,7 +54,8 @@ bool place_by_scaling(SmallNetwork& network);
 /// shrinks to `width`. Dense: O(iterations * (dimension * free nodes)^3).
 void fit_robustly(SmallNetwork& network, double width, int max_iterations);
 
-/// Sum over the ranges of min(r^2, limit).
-double truncated_cost(const SmallNetwork& network, double limit);
+/// Sum over the ranges of min(r^2, limit), and of what it costs that the last node has none
+/// to the strangers.
+double place_cost(const SmallNetwork& network, const Limits& limits);
 
 }  // namespace isotherm::geometry::detail

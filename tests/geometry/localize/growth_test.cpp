@@ -14,6 +14,7 @@ namespace isotherm::geometry::detail {
 namespace {
 
 const double kGate = chi_squared_quantile(0.999, 1);
+const Evidence kNoEvidence = {{}, {kGate, kGate}};
 
 std::vector<bool> all_of(const RangeProblem& problem) {
   return std::vector<bool>(problem.pairs.size(), true);
@@ -59,7 +60,7 @@ TEST(Grow, FromACliqueReachesAllNodes) {
   const auto seeds = consistent_cliques(problem, trusted, kGate, {});
   ASSERT_FALSE(seeds.empty());
   auto map = place_nodes(problem, seeds.front().members, seeds.front().positions);
-  grow(problem, trusted, kGate, {}, map);
+  grow(problem, trusted, kGate, kNoEvidence, {}, map);
   EXPECT_GE(placed_count(map), 110);
   std::vector<Index> nodes;
   for (Index v = 0; v < problem.nodes; ++v) {
@@ -76,11 +77,11 @@ TEST(Grow, StopsAtTheLimitAndWhereNothingIsPlaced) {
   const auto problem = make_problem(simulated.network);
   const auto trusted = all_of(problem);
   auto none = place_nodes(problem, {}, Eigen::MatrixXd(2, 0));
-  grow(problem, trusted, kGate, {}, none);
+  grow(problem, trusted, kGate, kNoEvidence, {}, none);
   EXPECT_EQ(placed_count(none), 0);
   const auto seeds = consistent_cliques(problem, trusted, kGate, {});
   auto map = place_nodes(problem, seeds.front().members, seeds.front().positions);
-  grow(problem, trusted, kGate, {}, map, placed_count(map));
+  grow(problem, trusted, kGate, kNoEvidence, {}, map, placed_count(map));
   EXPECT_EQ(placed_count(map), static_cast<Index>(seeds.front().members.size()));
 }
 

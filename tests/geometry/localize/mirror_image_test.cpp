@@ -10,7 +10,7 @@
 namespace isotherm::geometry::detail {
 namespace {
 
-Tie shared_point(const Point& point) { return {point, point, 0.0, 1.0, 1e6}; }
+Tie shared_point(const Point& point) { return {point, point, 0.0, 1.0, {1e6, 1e6}}; }
 
 /// Least sum of squares of an improper rotation and a translation, by the singular values
 /// of the covariance (Kabsch, with the sign of the determinant turned).
@@ -27,14 +27,14 @@ TEST(MirrorImage, OfSharedPointsIsTheBestImproperRotation) {
     for (auto& value : points.reshaped()) value = random.uniform(-3.0, 3.0);
     std::vector<Tie> ties;
     for (const auto& point : points.colwise()) ties.push_back(shared_point(point));
-    EXPECT_NEAR(mirror_image_cost(ties), improper_procrustes(points), 1e-4) << d;
+    EXPECT_NEAR(mirror_image_cost({ties}), improper_procrustes(points), 1e-4) << d;
   }
 }
 
 TEST(MirrorImage, CostsNothingOnAHinge) {
   const std::vector<Tie> hinge = {shared_point(Eigen::Vector2d(0, 0)),
                                   shared_point(Eigen::Vector2d(2, 1))};
-  EXPECT_NEAR(mirror_image_cost(hinge), 0.0, 1e-12);
+  EXPECT_NEAR(mirror_image_cost({hinge}), 0.0, 1e-12);
 }
 
 TEST(MirrorImage, ARangeAcrossTheHingeSpeaksAgainstIt) {
@@ -42,14 +42,36 @@ TEST(MirrorImage, ARangeAcrossTheHingeSpeaksAgainstIt) {
   // one below. Mirrored it would be 2 instead of 4 away.
   std::vector<Tie> ties = {shared_point(Eigen::Vector2d(-5, 0)),
                            shared_point(Eigen::Vector2d(5, 0))};
-  ties.push_back({Eigen::Vector2d(0, 3), Eigen::Vector2d(0, -1), 4.0, 0.1, 50.0});
+  ties.push_back({Eigen::Vector2d(0, 3), Eigen::Vector2d(0, -1), 4.0, 0.1, {50.0, 50.0}});
   EXPECT_DOUBLE_EQ(ties.back().cost(), 0.0);
-  const double cost = mirror_image_cost(ties);
+  const double cost = mirror_image_cost({ties});
   EXPECT_GT(cost, 2.0);   // shifting the hinge by 2 costs 2 * 1 each
   EXPECT_LE(cost, 50.0);  // giving up the range
 }
 
-TEST(MirrorImage, WithoutEnoughTiesIsImpossible) { EXPECT_TRUE(std::isinf(mirror_image_cost({}))); }
+TEST(MirrorImage, ThePlacesOfItsPointsCount) {
+  // On a hinge along the x axis the mirror image of a point at (1, 2) is at (1, -2).
+  TiedBody body{{shared_point(Eigen::Vector2d(0, 0)), shared_point(Eigen::Vector2d(2, 0))},
+                {Eigen::Vector2d(1, 2)}};
+  const auto cost = [](const std::vector<Point>& places) {
+    return 3.0 + (places.front() - Eigen::Vector2d(1, -2)).norm();
+  };
+  EXPECT_NEAR(mirror_image_cost(body, cost), 3.0, 1e-9);
+  // Not asked where the ties alone are enough.
+  EXPECT_NEAR(mirror_image_cost(body, cost, 0.0), 0.0, 1e-12);
+}
+
+TEST(MirrorImage, ARangeHasALimitOnEitherSide) {
+  const Tie tie{Eigen::Vector2d(0, 0), Eigen::Vector2d(5, 0), 2.0, 0.1, {7.0, 4.0}};
+  EXPECT_DOUBLE_EQ(tie.cost(), 7.0);
+  auto close = tie;
+  close.distance = 9.0;
+  EXPECT_DOUBLE_EQ(close.cost(), 4.0);
+}
+
+TEST(MirrorImage, WithoutEnoughTiesIsImpossible) {
+  EXPECT_TRUE(std::isinf(mirror_image_cost({{}})));
+}
 
 }  // namespace
 }  // namespace isotherm::geometry::detail
