@@ -8,7 +8,6 @@
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/random.hpp"
 #include "isotherm/base/statistics.hpp"
-#include "median.hpp"
 
 namespace isotherm::slam {
 namespace {

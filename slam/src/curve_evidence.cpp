@@ -7,9 +7,9 @@
 
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/parallel.hpp"
+#include "isotherm/base/statistics.hpp"
 #include "isotherm/geometry/curve_stretch.hpp"
 #include "isotherm/slam/odometry.hpp"
-#include "median.hpp"
 
 namespace isotherm::slam {
 namespace {

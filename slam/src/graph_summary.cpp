@@ -8,6 +8,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "isotherm/base/statistics.hpp"
 #include "isotherm/base/text_writer.hpp"
 #include "isotherm/slam/information.hpp"
 #include "isotherm/slam/odometry.hpp"
@@ -23,13 +24,6 @@ constexpr double kOutlyingSigma = 100.0;
 // Smallest eigenvalue, after scaling to a unit diagonal, of a matrix that is
 // called singular.
 constexpr double kSingular = 1e-12;
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + (values.size() - 1) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 struct Sigmas {
   double translation = 0.0;
@@ -169,6 +163,7 @@ class Summarizer {
   InformationHealth health(const std::vector<Index>& edges, const std::string& kind) {
     InformationHealth result;
     result.edges = edges.size();
+    if (edges.empty()) return result;
     std::vector<double> translations;
     std::vector<double> rotations;
     std::vector<const typename Pose::Matrix*> matrices;
@@ -216,6 +211,7 @@ class Summarizer {
     for (const Index k : roles_.odometry) {
       lengths.push_back(constraint(k).T_from_to.translation().norm());
     }
+    if (lengths.empty()) return;
     const double typical = median(lengths);
     if (typical == 0.0) return;
     for (std::size_t i = 0; i < lengths.size(); ++i) {

@@ -1,18 +1,10 @@
 #include "isotherm/slam/induce.hpp"
 
-#include <cmath>
-
-#include "isotherm/base/error.hpp"
+#include "isotherm/base/require.hpp"
 #include "isotherm/slam/odometry_chi2.hpp"
 
 namespace isotherm::slam {
 namespace {
-
-void require_positive(const char* name, double value) {
-  if (!(std::isfinite(value) && value > 0.0)) {
-    throw InvalidArgument(name, "must be finite and positive");
-  }
-}
 
 template <class Pose>
 std::vector<double> candidate_weights(const PoseGraph<Pose>& graph, const EdgeRoles& roles,

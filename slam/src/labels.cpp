@@ -7,10 +7,6 @@
 namespace isotherm::slam {
 namespace {
 
-void require_positive(const char* name, double value) {
-  if (!(value > 0.0)) throw InvalidArgument(name, "must be positive");
-}
-
 Label judge(double translation_error, double rotation_error, const LabelOptions& options) {
   if (rotation_error > options.max_rotation_error) return Label::incorrect;
   if (translation_error > options.max_translation_error + options.ignore_band) {
@@ -25,8 +21,10 @@ Label judge(double translation_error, double rotation_error, const LabelOptions&
 }  // namespace
 
 void LabelOptions::validate() const {
-  require_positive("max_translation_error", max_translation_error);
-  require_positive("max_rotation_error", max_rotation_error);
+  if (!(max_translation_error > 0.0)) {
+    throw InvalidArgument("max_translation_error", "must be positive");
+  }
+  if (!(max_rotation_error > 0.0)) throw InvalidArgument("max_rotation_error", "must be positive");
   if (!(ignore_band >= 0.0)) throw InvalidArgument("ignore_band", "must not be negative");
 }
 

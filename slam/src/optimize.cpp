@@ -4,17 +4,12 @@
 #include <cmath>
 
 #include "isotherm/base/error.hpp"
+#include "isotherm/base/require.hpp"
 #include "minimize.hpp"
 #include "robust_minimize.hpp"
 
 namespace isotherm::slam {
 namespace {
-
-void require_positive(const char* field, double value) {
-  if (!(value > 0.0) || !std::isfinite(value)) {
-    throw InvalidArgument(field, "must be a positive number");
-  }
-}
 
 Initialization default_start(RobustKernel kernel) {
   switch (kernel) {

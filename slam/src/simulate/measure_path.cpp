@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "isotherm/base/error.hpp"
+#include "isotherm/base/require.hpp"
 #include "isotherm/slam/odometry.hpp"
 #include "simulate/loop_pairs.hpp"
 
@@ -84,12 +84,6 @@ std::vector<Eigen::Vector3d> places(const std::vector<Pose>& path) {
     result[k].template head<Pose::kDim>() = path[k].translation();
   }
   return result;
-}
-
-void require_positive(const char* name, double value) {
-  if (!(std::isfinite(value) && value > 0.0)) {
-    throw InvalidArgument(name, "must be finite and positive");
-  }
 }
 
 }  // namespace

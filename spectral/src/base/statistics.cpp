@@ -1,6 +1,8 @@
 #include "isotherm/base/statistics.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include <boost/math/distributions/chi_squared.hpp>
 
@@ -15,6 +17,14 @@ boost::math::chi_squared distribution(int dof) {
 }
 
 }  // namespace
+
+double median(std::vector<double> values) {
+  const auto half = static_cast<std::ptrdiff_t>(values.size() / 2);
+  const auto upper = values.begin() + half;
+  std::nth_element(values.begin(), upper, values.end());
+  if (values.size() % 2 == 1) return *upper;
+  return 0.5 * (*upper + *std::max_element(values.begin(), upper));
+}
 
 double chi_squared_quantile(double probability, int dof) {
   if (!(probability >= 0.0 && probability < 1.0)) {

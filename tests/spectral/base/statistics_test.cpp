@@ -38,5 +38,12 @@ TEST(ChiSquared, EndsAndBadArguments) {
   EXPECT_THROW(chi_squared_upper_tail(std::nan(""), 3), InvalidArgument);
 }
 
+TEST(Median, IsTheMiddleOneOrTheMeanOfTwo) {
+  EXPECT_EQ(median({7.0}), 7.0);
+  EXPECT_EQ(median({9.0, 1.0, 4.0}), 4.0);
+  EXPECT_EQ(median({9.0, 1.0, 4.0, 2.0}), 3.0);
+  EXPECT_EQ(median({5.0, 5.0, 5.0, 5.0}), 5.0);
+}
+
 }  // namespace
 }  // namespace isotherm

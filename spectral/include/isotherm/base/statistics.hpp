@@ -1,6 +1,11 @@
 #pragma once
 
+#include <vector>
+
 namespace isotherm {
+
+/// The middle one, or the mean of the middle two; `values` is not empty. O(n).
+double median(std::vector<double> values);
 
 /// The value that a chi-squared variable with `dof` degrees of freedom stays
 /// below with the given probability, 0 <= probability < 1.
