@@ -52,7 +52,7 @@ Json read_config(const CommonFlags& flags) {
 void write_json(const std::string& path, const Json& json) {
   if (path.empty()) return;
   OutputFile file(path);
-  file.write(json.dump(2) + "\n");
+  file.write(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   file.commit();
 }
 

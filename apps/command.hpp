@@ -49,7 +49,8 @@ void add_common_flags(CLI::App& verb, CommonFlags& flags);
 /// @throws FileError, ParseError
 Json read_config(const CommonFlags& flags);
 
-/// Pretty-prints `json` to `path` ("-" is stdout); does nothing for an empty path.
+/// Pretty-prints `json` to `path` ("-" is stdout); does nothing for an empty path. What
+/// is not UTF-8, as names in files need not be, becomes U+FFFD.
 void write_json(const std::string& path, const Json& json);
 
 }  // namespace isotherm::apps

@@ -120,6 +120,11 @@ TEST_F(Info, DistanceIntervals) {
   EXPECT_EQ(info(path.string())["ranges"], 191);
 }
 
+TEST_F(Info, NamesInFilesNeedNotBeUtf8) {
+  write_text(folder / "p", "VERTEX_SE2 0 0 0 0\nCAF\xe9 0 1\n");
+  EXPECT_EQ(info("p")["skipped"]["CAF\xef\xbf\xbd"], 1);
+}
+
 TEST_F(Info, TellsEveryContentAndListsWhatIsOdd) {
   write_text(folder / "t", "1 0 0 0 0 0 0 1\n2 3 4 0 0 0 0 1\n");
   EXPECT_EQ(info("t")["path_length_m"], 5.0);
