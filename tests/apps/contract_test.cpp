@@ -17,8 +17,8 @@ using testing::HasSubstr;
 using testing::Not;
 
 constexpr const char* kVerbs[] = {
-    "info",  "simulate city", "corrupt",          "prune",    "label",         "eval loops",
-    "edges", "embed",         "simulate network", "localize", "eval positions"};
+    "info",  "simulate city",    "corrupt",  "prune",          "label",    "eval loops", "edges",
+    "embed", "simulate network", "localize", "eval positions", "optimize", "eval ate",   "convert"};
 
 class Contract : public CommandTest {
  protected:
@@ -40,6 +40,7 @@ TEST_F(Contract, EveryVerbHasHelpThatFitsATerminal) {
     std::istringstream lines(result.out);
     for (std::string line; std::getline(lines, line);) {
       EXPECT_LE(line.size(), 80u) << verb << ": " << line;
+      EXPECT_EQ(line.find('_'), std::string::npos) << "kebab-case only: " << line;
     }
   }
 }

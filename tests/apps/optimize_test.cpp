@@ -22,7 +22,7 @@ class OptimizeCommand : public CommandTest {
 
 TEST_F(OptimizeCommand, BringsTheTrajectoryToTheTruth) {
   make_city();
-  for (const std::string start : {"odometry", "spanning_tree", "chordal", "file"}) {
+  for (const std::string start : {"odometry", "spanning-tree", "chordal", "file"}) {
     run_ok("optimize clean.g2o -o out.g2o --json result.json --initialization " + start);
     const auto json = read_text(folder / "result.json");
     for (const char* key : {"isotherm.optimize/1", "\"status\": \"converged\"", "\"iterations\"",
@@ -37,9 +37,9 @@ TEST_F(OptimizeCommand, BringsTheTrajectoryToTheTruth) {
 
 TEST_F(OptimizeCommand, KernelsAndAlgorithms) {
   make_city();
-  for (const std::string kernel : {"huber", "cauchy", "dcs", "sc", "gnc", "gnc_gm"}) {
+  for (const std::string kernel : {"huber", "cauchy", "dcs", "sc", "gnc", "gnc-gm"}) {
     run_ok("optimize clean.g2o -o out.g2o --kernel " + kernel +
-           " --kernel-width 5 --algorithm gauss_newton");
+           " --kernel-width 5 --algorithm gauss-newton");
   }
   EXPECT_EQ(run("optimize clean.g2o --kernel tukey").code, 2);
   EXPECT_EQ(run("optimize clean.g2o --kernel-width -1").code, 2);
@@ -49,14 +49,14 @@ TEST_F(OptimizeCommand, SaysWhenItDidNotConverge) {
   make_city();
   const auto result = run("optimize clean.g2o -o start.g2o --max-iterations 0 --json result.json");
   EXPECT_EQ(result.code, 4);
-  EXPECT_THAT(read_text(folder / "result.json"), HasSubstr("iteration_limit"));
+  EXPECT_THAT(read_text(folder / "result.json"), HasSubstr("iteration-limit"));
   EXPECT_TRUE(std::filesystem::exists(folder / "start.g2o"));
 }
 
 TEST_F(OptimizeCommand, WritesTrajectories) {
   make_city();
   run_ok("optimize clean.g2o -o a.tum");
-  run_ok("optimize clean.g2o -o b.tum --algorithm gauss_newton --initialization odometry");
+  run_ok("optimize clean.g2o -o b.tum --algorithm gauss-newton --initialization odometry");
   EXPECT_THAT(run_ok("eval ate a.tum b.tum --align none"), HasSubstr("max 0.0000"));
 }
 

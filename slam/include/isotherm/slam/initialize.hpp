@@ -25,7 +25,7 @@ enum class Initialization {
 constexpr std::array<EnumName<Initialization>, 6> enum_names(Initialization) {
   return {{{Initialization::automatic, "automatic"},
            {Initialization::odometry, "odometry"},
-           {Initialization::spanning_tree, "spanning_tree"},
+           {Initialization::spanning_tree, "spanning-tree"},
            {Initialization::chordal, "chordal"},
            {Initialization::file, "file"},
            {Initialization::switchable, "switchable"}}};

@@ -27,8 +27,8 @@ enum class OptimizeAlgorithm {
 
 constexpr std::array<EnumName<OptimizeAlgorithm>, 3> enum_names(OptimizeAlgorithm) {
   return {{{OptimizeAlgorithm::automatic, "automatic"},
-           {OptimizeAlgorithm::gauss_newton, "gauss_newton"},
-           {OptimizeAlgorithm::levenberg_marquardt, "levenberg_marquardt"}}};
+           {OptimizeAlgorithm::gauss_newton, "gauss-newton"},
+           {OptimizeAlgorithm::levenberg_marquardt, "levenberg-marquardt"}}};
 }
 
 struct OptimizeOptions {
@@ -70,7 +70,7 @@ enum class OptimizeStatus {
 
 constexpr std::array<EnumName<OptimizeStatus>, 3> enum_names(OptimizeStatus) {
   return {{{OptimizeStatus::converged, "converged"},
-           {OptimizeStatus::iteration_limit, "iteration_limit"},
+           {OptimizeStatus::iteration_limit, "iteration-limit"},
            {OptimizeStatus::diverged, "diverged"}}};
 }
 

@@ -27,7 +27,7 @@ constexpr std::array<EnumName<RobustKernel>, 7> enum_names(RobustKernel) {
            {RobustKernel::dcs, "dcs"},
            {RobustKernel::sc, "sc"},
            {RobustKernel::gnc, "gnc"},
-           {RobustKernel::gnc_gm, "gnc_gm"}}};
+           {RobustKernel::gnc_gm, "gnc-gm"}}};
 }
 
 /// Cost rho(chi2) and its derivative, the weight of the constraint.
