@@ -8,6 +8,7 @@
 #include "console.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm/slam/io/trajectory_file.hpp"
+#include "isotherm/slam/trusted_edges.hpp"
 #include "option_verb.hpp"
 #include "pose_graph_input.hpp"
 #include "verbs.hpp"
@@ -20,6 +21,7 @@ using namespace slam;
 struct OptimizeVerb : OptionVerb<OptimizeOptions> {
   std::string input;
   std::string output;
+  std::string trusted;
 
   int run() {
     if (resolve_or_dump()) return kOk;
@@ -30,7 +32,8 @@ struct OptimizeVerb : OptionVerb<OptimizeOptions> {
 
   template <class Pose>
   int run_on(PoseGraph<Pose>& graph, const PoseGraphFile& file) {
-    const auto result = optimize(graph, options);
+    const auto roles = trusted.empty() ? edge_roles(graph) : read_trusted_edges(trusted, graph);
+    const auto result = optimize(graph, roles, options);
     report(result);
     graph.poses = result.poses;
     if (output.ends_with(".tum")) {
@@ -83,6 +86,9 @@ Verb add_optimize(CLI::App& root) {
   verb->add_option("input", optimize->input, "pose graph (- for stdin)")->required();
   verb->add_option("-o,--output", optimize->output,
                    "optimised pose graph (g2o; - for stdout), or trajectory if it ends in .tum")
+      ->type_name("FILE");
+  verb->add_option("--trusted", optimize->trusted,
+                   "CSV of edges to trust in place of odometry (edge, or from,to)")
       ->type_name("FILE");
   optimize->add_flags(*verb);
   return {verb, [optimize] { return optimize->run(); }};

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "run_command.hpp"
 
@@ -43,6 +44,23 @@ TEST_F(OptimizeCommand, KernelsAndAlgorithms) {
   }
   EXPECT_EQ(run("optimize clean.g2o --kernel tukey").code, 2);
   EXPECT_EQ(run("optimize clean.g2o --kernel-width -1").code, 2);
+}
+
+TEST_F(OptimizeCommand, KernelsSpareEdgesThatAreTrusted) {
+  write_text(folder / "bend.g2o",
+             "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nVERTEX_SE2 2 2 0 0\n"
+             "EDGE_SE2 0 1 1 0 0 100 0 0 100 0 100\nEDGE_SE2 1 2 1 0 0 100 0 0 100 0 100\n"
+             "EDGE_SE2 0 2 0.5 0 0 100 0 0 100 0 100\n");
+  write_text(folder / "all.csv", "edge\n0\n1\n2\n");
+  run_ok("optimize bend.g2o --kernel cauchy -o doubted.g2o");
+  EXPECT_THAT(read_text(folder / "doubted.g2o"), HasSubstr("VERTEX_SE2 2 1.9"));
+  run_ok("optimize bend.g2o --kernel cauchy --trusted all.csv --json trusted.json");
+  run_ok("optimize bend.g2o --json plain.json");
+  const auto cost = [this](const char* name) {
+    return nlohmann::json::parse(read_text(folder / name))["final_cost"].get<double>();
+  };
+  EXPECT_DOUBLE_EQ(cost("trusted.json"), cost("plain.json"));
+  EXPECT_EQ(run("optimize bend.g2o --trusted nowhere.csv").code, 3);
 }
 
 TEST_F(OptimizeCommand, SaysWhenItDidNotConverge) {
