@@ -3,7 +3,7 @@
 # Writes docs/results/consensus.md. Every row is kept in build/consensus-rows, so
 # that an interrupted run goes on where it stopped; remove the folder to start anew.
 # usage: benchmarks/consensus.sh [--quick] [--rows-so-far] [data folder]
-#   --quick        one seed, two fractions, of the larger graphs a sample
+#   --quick        one seed, two fractions, of the larger graphs three types
 #   --rows-so-far  writes the page from the rows that are there, and measures nothing
 #   data folder    default $ISOTHERM_DATA or ../shared/data
 # ISOTHERM names the command to measure; without it, the release preset is built.
@@ -30,14 +30,15 @@ mkdir -p "$rows"
 missing=0
 
 seeds="1 2 3"; fractions="0.1 0.3 0.5 0.7 0.9"
-corrupted="intel CSAIL kitti_00 kitti_02 ringCity city10000 sphere2500 torus3D parking-garage cubicle"
+corrupted="intel CSAIL kitti_00 kitti_02 ringCity"
+types="random local random-grouped local-grouped all-random"
+large="city10000 sphere2500 torus3D parking-garage cubicle"
+large_styles="vertigo paper"; large_types=$types; large_fractions="0.5 0.1"
 clean="MIT CSAIL intel ais2klinik ring ringCity city10000 kitti_00 kitti_02 kitti_06 kitti_07 kitti_09
   B25b_0.600 tinyGrid3D smallGrid3D parking-garage sphere2500 torus3D cubicle"
-sampled=
 if $quick; then
-  sampled="city10000 sphere2500 parking-garage torus3D cubicle"
   seeds=1; fractions="0.5 0.9"
-  corrupted="intel CSAIL kitti_00 kitti_02 ringCity"
+  large_styles=vertigo; large_types="random random-grouped local-grouped"; large_fractions=0.5
 fi
 
 path_of() {
@@ -93,6 +94,21 @@ corrupt_row() {
     --fraction "$fraction" --seed "$seed" -o "$work/bad.g2o" --labels "$work/l.csv" -q
   judge "$graph, $style $type $fraction, seed $seed" "$work/bad.g2o" "$work/l.csv"
   echo
+}
+
+# corrupt_rows GRAPH STYLES TYPES FRACTIONS SEEDS: one row for each combination.
+corrupt_rows() {
+  local style type fraction seed
+  for style in $2; do
+    for type in $3; do
+      for fraction in $4; do
+        for seed in $5; do
+          cached "corrupt-$1-$style-$type-$fraction-$seed" \
+            corrupt_row "$1" "$style" "$type" "$fraction" "$seed"
+        done
+      done
+    done
+  done
 }
 
 shared_row() {
@@ -170,7 +186,7 @@ labelled at the optimum of the clean graph, real ones by ground truth (2 m, 0.5 
 Seconds are CPU time of `isotherm prune --threads 1`, reading and writing included.
 HEAD
   if $quick; then
-    echo "This page is of a \`--quick\` run: one seed, fractions $fractions, of the larger graphs a sample."
+    echo "This page is of a \`--quick\` run."
   fi
   printf '\n## Clean graphs\n\n| graph | loops | pruned | ambiguous | seconds |\n|---|---|---|---|---|\n'
   for graph in $clean; do cached "clean-$graph" clean_row "$graph"; done
@@ -205,24 +221,16 @@ HEAD
   printf 'command on one thread beside `GncLMOptimizer` without reading, in the same run.\n\n'
   cached gnc gnc_rows
   printf '\n## Size: cities with as many candidates as poses, half of them false\n\n%s\n' "$figures"
-  for poses in 10000 20000 50000; do cached "large-$poses" large_row "$poses"; done
-  if ! $quick; then cached large-100000 large_row 100000; fi
-  printf '\n## Injected false loops: five types, both styles\n\n%s\n' "$figures"
+  for poses in 10000 20000 50000 100000; do cached "large-$poses" large_row "$poses"; done
+  printf '\n## Injected false loops: five types, both styles\n\n'
+  printf 'Fractions of all loops: %s, seeds %s; of %s: %s, seed 1.\n\n%s\n' \
+    "$fractions" "$seeds" "${large// /, }" "$large_fractions" "$figures"
   for graph in $corrupted; do
-    for style in vertigo paper; do
-      for type in random local random-grouped local-grouped all-random; do
-        for fraction in $fractions; do
-          for seed in $seeds; do
-            cached "corrupt-$graph-$style-$type-$fraction-$seed" \
-              corrupt_row "$graph" "$style" "$type" "$fraction" "$seed"
-          done
-        done
-      done
-    done
+    corrupt_rows "$graph" "vertigo paper" "$types" "$fractions" "$seeds"
   done
-  for graph in $sampled; do
-    for type in random random-grouped local-grouped; do
-      cached "corrupt-$graph-vertigo-$type-0.5-1" corrupt_row "$graph" vertigo "$type" 0.5 1
+  for fraction in $large_fractions; do
+    for graph in $large; do
+      corrupt_rows "$graph" "$large_styles" "$large_types" "$fraction" 1
     done
   done
   if [ "$missing" -gt 0 ]; then
