@@ -1,5 +1,7 @@
 """The words around the tables of docs/results/paper.md."""
 
+import textwrap
+
 from page import STYLE_NAMES
 
 HEAD = """# The paper's experiments, repeated
@@ -146,8 +148,16 @@ def findings(page, extent):
         "consensus": page.table2_range("consensus + Cauchy"),
         "heat": page.table2_range("heat (χ²) + Cauchy"),
         "dcs": page.hindsight_range("dcs")}.items()}
-    return FINDINGS.format(table1=" ".join(table1), heat="; ".join(heat),
-                           table2=", ".join(table2), ranges=ranges)
+    return wrapped(FINDINGS.format(table1=" ".join(table1), heat="; ".join(heat),
+                                   table2=", ".join(table2), ranges=ranges))
+
+
+def wrapped(text):
+    """The same with the items of its list filled to the width of a page."""
+    head, *items = text.split("\n- ")
+    filled = [textwrap.fill(" ".join(item.split()), 92, initial_indent="- ", subsequent_indent="  ",
+                            break_long_words=False, break_on_hyphens=False) for item in items]
+    return "\n".join([head, *filled]) + "\n"
 
 
 def page_text(page, extent, quick):
