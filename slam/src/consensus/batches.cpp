@@ -29,6 +29,23 @@ std::vector<Index> most_certain_third(std::vector<Index> passing,
   return passing;
 }
 
+std::vector<std::vector<Index>> agreeing_groups(const MutualSupport& support,
+                                                const std::vector<Index>& eligible,
+                                                std::size_t loop_count) {
+  std::vector<Index> parent(loop_count, -1);
+  for (const Index k : eligible) parent[k] = k;
+  for (const auto& link : support.agreeing) {
+    if (parent[link.first] < 0 || parent[link.second] < 0) continue;
+    const Index a = find_root(parent, link.first);
+    const Index b = find_root(parent, link.second);
+    parent[std::max(a, b)] = std::min(a, b);
+  }
+  std::vector<std::vector<Index>> group_of_root(loop_count);
+  for (const Index k : eligible) group_of_root[find_root(parent, k)].push_back(k);
+  std::erase_if(group_of_root, [](const auto& group) { return group.empty(); });
+  return group_of_root;
+}
+
 std::vector<Index> strongest_clusters(const MutualSupport& support,
                                       const std::vector<Index>& eligible,
                                       const std::vector<double>& log_odds, double alike_fraction,

@@ -13,6 +13,12 @@ namespace isotherm::slam::detail {
 std::vector<Index> most_certain_third(std::vector<Index> passing,
                                       const std::vector<double>& log_odds, double expected_false);
 
+/// The `eligible` loops in groups of those that agree, each group and all groups in order
+/// of their first loop. `loop_count` is that of the graph.
+std::vector<std::vector<Index>> agreeing_groups(const MutualSupport& support,
+                                                const std::vector<Index>& eligible,
+                                                std::size_t loop_count);
+
 /// The strongest groups of loops that confirm each other, among the `eligible` ones.
 ///
 /// A group's score is what the graph says about its best member, plus what agreement

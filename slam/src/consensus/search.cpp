@@ -91,8 +91,8 @@ void Search<Pose>::accept_while_possible() {
       settled_ = false;
       return;
     }
-    if (accept_next_batch()) continue;
-    if (!readmit()) return;
+    if (accept_next_batch() || readmit()) continue;
+    if (!take_likely_ || !join_on_trial()) return;
   }
 }
 

@@ -47,6 +47,8 @@ class Search {
     typename Estimate<Pose>::Layout layout;
   };
 
+  bool join_on_trial();
+  std::size_t witnesses(const std::vector<Selection>& groups, std::size_t tried);
   bool reconsider();
   std::size_t freed_without(const Selection& loops);
   Snapshot snapshot() const;

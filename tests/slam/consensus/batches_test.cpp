@@ -19,6 +19,16 @@ TEST(MostCertainThird, AndWithItWhatIsBeyondDoubt) {
   EXPECT_EQ(most_certain_third({0, 1, 2, 3}, log_odds, 1e-6), (Loops{1, 2, 0}));
 }
 
+TEST(AgreeingGroups, AreThoseOfTheEligible) {
+  const MutualSupport support{.agreeing = {{3, 1, 8.0}, {1, 2, 7.0}, {4, 5, 1.0}},
+                              .contradicting = {{0, 3}}};
+  EXPECT_EQ(agreeing_groups(support, {0, 1, 2, 3, 5}, 6),
+            (std::vector<Loops>{{0}, {1, 2, 3}, {5}}));
+  EXPECT_EQ(agreeing_groups(support, {2, 3}, 6), (std::vector<Loops>{{2}, {3}}))
+      << "the one between them is not eligible";
+  EXPECT_TRUE(agreeing_groups(support, {}, 6).empty());
+}
+
 TEST(StrongestClusters, AgreementAddsUp) {
   // Three loops that agree, and one that is by itself.
   const MutualSupport support{.agreeing = {{0, 1, 8.0}, {1, 2, 7.0}}, .contradicting = {{0, 3}}};

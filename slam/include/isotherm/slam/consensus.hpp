@@ -60,7 +60,7 @@ struct ConsensusRound {
   std::int64_t accepted = 0;  ///< in this round
   std::int64_t dropped = 0;   ///< accepted before, inconsistent now
   std::int64_t in_force = 0;  ///< accepted loops after the round
-  std::string rule;           ///< "evidence", "cluster", "prior" or "span" (a bridge)
+  std::string rule;           ///< "evidence", "cluster", "prior", "span" or "trial"
 };
 
 struct ConsensusResult {

@@ -1,0 +1,68 @@
+#include <algorithm>
+#include <utility>
+
+#include "batches.hpp"
+#include "search.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+constexpr std::size_t kMostTrials = 30;
+// So many groups elsewhere must be proven: of hundreds of false loops one or the other
+// fits any way of joining two parts.
+constexpr std::size_t kFewestWitnesses = 3;
+
+}  // namespace
+
+// Loops between parts that nothing joins have no evidence, and where false loops come in
+// groups agreement proves little. So the largest groups are accepted in turn on trial:
+// the one stays that lets most others, which do not agree with it by themselves, be
+// proven.
+template <class Pose>
+bool Search<Pose>::join_on_trial() {
+  Selection apart;
+  for (const Index k : in_question()) {
+    if (!judge_.connected(k)) apart.push_back(k);
+  }
+  auto groups = agreeing_groups(support_, apart, accepted_.size());
+  if (groups.size() <= kFewestWitnesses) return false;
+  std::stable_sort(groups.begin(), groups.end(),
+                   [](const Selection& a, const Selection& b) { return a.size() > b.size(); });
+  std::size_t most = 0;
+  std::size_t best = 0;
+  for (std::size_t k = 0; k < std::min(groups.size(), kMostTrials); ++k) {
+    const std::size_t found = witnesses(groups, k);
+    if (found > most) best = k;
+    most = std::max(most, found);
+  }
+  if (most < kFewestWitnesses) return false;
+  accept({"trial", groups[best]});
+  return true;
+}
+
+// Groups of which a member is proven once `groups[tried]` is accepted.
+template <class Pose>
+std::size_t Search<Pose>::witnesses(const std::vector<Selection>& groups, std::size_t tried) {
+  Snapshot before = snapshot();
+  accept({"trial", groups[tried]});
+  settle();
+  assess();
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    if (k == tried) continue;
+    count += std::ranges::any_of(groups[k], [this](Index loop) {
+      return !accepted_[loop] && judge_.connected(loop) && judge_.inside_gate(loop) &&
+             judge_.log_odds(loop, judge_.evidence(loop)) >= required_odds_;
+    });
+  }
+  restore(std::move(before));
+  settle();
+  return count;
+}
+
+template bool Search<Pose2>::join_on_trial();
+template std::size_t Search<Pose2>::witnesses(const std::vector<Selection>&, std::size_t);
+template bool Search<Pose3>::join_on_trial();
+template std::size_t Search<Pose3>::witnesses(const std::vector<Selection>&, std::size_t);
+
+}  // namespace isotherm::slam::detail
