@@ -14,8 +14,8 @@ constexpr std::size_t kFewestWitnesses = 3;
 
 }  // namespace
 
-// Loops between parts that nothing joins have no evidence, and where false loops come in
-// groups agreement proves little. So the largest groups are accepted in turn on trial:
+// Loops between parts that nothing joins have no evidence, and of groups that agree one
+// may be as strong as the other. So the largest groups are accepted in turn on trial:
 // the one stays that lets most others, which do not agree with it by themselves, be
 // proven.
 template <class Pose>

@@ -22,6 +22,7 @@ constexpr int kCalibrations = 6;      // of the covariance scales, on proven loo
 constexpr int kLastCalibrations = 1;  // and with the likely ones
 constexpr int kReconsiderations = 3;
 constexpr int kMostDoublings = 4;  // of odometry's covariance, where it refutes every loop
+constexpr Index kFewParts = 10;
 constexpr double kBridgeProbability = 0.95;  // of a loop of which only its span is known
 
 double log_odds_of(double probability) { return std::log(probability / (1.0 - probability)); }
@@ -92,7 +93,8 @@ void Search<Pose>::accept_while_possible() {
       return;
     }
     if (accept_next_batch() || readmit()) continue;
-    if (!take_likely_ || !join_on_trial()) return;
+    if ((take_likely_ || parts_are_few()) && join_on_trial()) continue;
+    if (!parts_are_few() || !accept_between_parts()) return;
   }
 }
 
@@ -169,13 +171,31 @@ typename Search<Pose>::Batch Search<Pose>::next_batch() const {
   };
   Batch batch{"evidence", passing(required_odds_)};
   if (batch.loops.empty()) {
+    Selection within = eligible;
+    if (parts_are_few()) std::erase_if(within, [&](Index k) { return !judge_.connected(k); });
     batch = {"cluster",
-             strongest_clusters(support_, eligible, odds, alike_fraction_, required_odds_)};
+             strongest_clusters(support_, within, odds, alike_fraction_, required_odds_)};
   }
   if (!batch.loops.empty() || !take_likely_) return batch;
   batch = {"prior", passing(0.0)};
   if (batch.loops.empty()) batch = {"span", bridges(eligible, odds)};
   return batch;
+}
+
+// Hundreds of pieces of broken odometry are joined by clusters, whose loops are mostly
+// short; each trial would tell little. The joint between a few parts decides of all.
+template <class Pose>
+bool Search<Pose>::parts_are_few() const {
+  return estimate_.component_count() <= kFewParts;
+}
+
+// Where no trial decided.
+template <class Pose>
+bool Search<Pose>::accept_between_parts() {
+  const Batch batch{"cluster", strongest_clusters(support_, in_question(), judge_.log_odds(),
+                                                  alike_fraction_, required_odds_)};
+  if (!batch.loops.empty()) accept(batch);
+  return !batch.loops.empty();
 }
 
 // Short loops between parts that nothing joins: broken odometry. They have no evidence

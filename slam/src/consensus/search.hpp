@@ -47,6 +47,8 @@ class Search {
     typename Estimate<Pose>::Layout layout;
   };
 
+  bool parts_are_few() const;
+  bool accept_between_parts();
   bool join_on_trial();
   std::size_t witnesses(const std::vector<Selection>& groups, std::size_t tried);
   bool reconsider();

@@ -285,14 +285,20 @@ TEST(Consensus, JoinsBrokenOdometryByTheSpanOfLoops) {
 TEST(Consensus, JoinsPartsByWhatLoopsElsewhereConfirm) {
   auto city = simulate_city({.poses = 1200, .measurements = {.loops = 400}, .seed = 9});
   std::erase_if(city.graph.constraints, [](const auto& c) { return c.from == 599 && c.to == 600; });
-  const auto bad = corrupt(city.graph, city.truth,
-                           {.type = NoiseType::random_grouped, .fraction = 0.5, .seed = 9});
-  const auto result = consensus(bad.graph, edge_roles(bad.graph), {.window = 3});
-  const auto metrics = evaluate_loops(result.verdicts, bad.labels);
-  EXPECT_EQ(metrics.precision(), 1.0);
-  EXPECT_EQ(metrics.recall(), 1.0);
-  EXPECT_EQ(count(result.verdicts, Verdict::ambiguous), 0);
-  EXPECT_TRUE(std::ranges::any_of(result.rounds, [](const auto& r) { return r.rule == "trial"; }));
+  const CorruptOptions hardly_clustered = {
+      .type = NoiseType::random_grouped, .fraction = 0.5, .seed = 9};
+  const CorruptOptions large_groups = {
+      .type = NoiseType::random_grouped, .fraction = 0.7, .group_size = 20, .seed = 10};
+  for (const auto& [options, window] : {std::pair(hardly_clustered, 3), {large_groups, 20}}) {
+    const auto bad = corrupt(city.graph, city.truth, options);
+    const auto result = consensus(bad.graph, edge_roles(bad.graph), {.window = window});
+    const auto metrics = evaluate_loops(result.verdicts, bad.labels);
+    EXPECT_EQ(metrics.precision(), 1.0);
+    EXPECT_EQ(metrics.recall(), 1.0);
+    EXPECT_EQ(count(result.verdicts, Verdict::ambiguous), 0);
+    EXPECT_TRUE(
+        std::ranges::any_of(result.rounds, [](const auto& r) { return r.rule == "trial"; }));
+  }
 }
 
 TYPED_TEST(ConsensusOf, DegenerateGraphs) {
