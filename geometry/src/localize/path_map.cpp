@@ -6,9 +6,8 @@
 #include <queue>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
 #include "isotherm/geometry/neighbour_graph.hpp"
+#include "localize/classical_scaling.hpp"
 #include "localize/refine.hpp"
 
 namespace isotherm::geometry::detail {
@@ -85,11 +84,7 @@ Pilots choose_pilots(const RangeProblem& problem, const std::vector<bool>& trust
 Eigen::MatrixXd scale(const Pilots& pilots, int d) {
   const Eigen::MatrixXd among = pilots.squared(pilots.which, Eigen::all);
   const Eigen::RowVectorXd means = among.colwise().mean();
-  Eigen::MatrixXd inner = among;
-  inner.rowwise() -= means;
-  inner.colwise() -= means.transpose();
-  inner.array() += means.mean();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(-0.5 * inner);
+  const auto eigen = classical_scaling(among);
   const auto n = among.rows();
   Eigen::MatrixXd positions = Eigen::MatrixXd::Zero(d, pilots.squared.rows());
   for (Eigen::Index i = 0; i < std::min<Eigen::Index>(d, n); ++i) {

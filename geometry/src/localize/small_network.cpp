@@ -5,9 +5,9 @@
 #include <limits>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include "localize/absence.hpp"
+#include "localize/classical_scaling.hpp"
 #include "localize/damped_step.hpp"
 #include "localize/range_problem.hpp"
 
@@ -120,13 +120,7 @@ bool place_by_scaling(SmallNetwork& network) {
   const auto n = network.positions.cols();
   const Eigen::MatrixXd length = shortest_paths(network);
   if (!length.allFinite()) return false;
-  const Eigen::MatrixXd squared = length.cwiseAbs2();
-  const Eigen::RowVectorXd means = squared.colwise().mean();
-  Eigen::MatrixXd inner = squared;
-  inner.rowwise() -= means;
-  inner.colwise() -= means.transpose();
-  inner.array() += means.mean();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(-0.5 * inner);
+  const auto eigen = classical_scaling(length.cwiseAbs2());
   for (Eigen::Index i = 0; i < d; ++i) {
     const double value = i < n ? std::max(0.0, eigen.eigenvalues()[n - 1 - i]) : 0.0;
     network.positions.row(i).setZero();
