@@ -36,8 +36,7 @@ bool Search<Pose>::join_on_trial() {
     most = std::max(most, found);
   }
   if (most < kFewestWitnesses) return false;
-  accept({"trial", groups[best]});
-  return true;
+  return accept({"trial", groups[best]});
 }
 
 // Groups of which a member is proven once `groups[tried]` is accepted.

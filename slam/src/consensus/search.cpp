@@ -92,17 +92,10 @@ void Search<Pose>::accept_while_possible() {
       settled_ = false;
       return;
     }
-    if (accept_next_batch() || readmit()) continue;
-    if ((take_likely_ || parts_are_few()) && join_on_trial()) continue;
-    if (!parts_are_few() || !accept_between_parts()) return;
+    if (accept(next_batch()) || readmit()) continue;
+    if ((take_likely_ || few_parts()) && join_on_trial()) continue;
+    if (!few_parts() || !accept(clusters_of(in_question(), judge_.log_odds()))) return;
   }
-}
-
-template <class Pose>
-bool Search<Pose>::accept_next_batch() {
-  const Batch batch = next_batch();
-  if (!batch.loops.empty()) accept(batch);
-  return !batch.loops.empty();
 }
 
 // Bounds hold as long as poses move little. At the end every loop that was refuted
@@ -117,7 +110,7 @@ bool Search<Pose>::readmit() {
   tell_progress();
   judge_.weigh_afresh(out);
   learn_from_decided();
-  return accept_next_batch();
+  return accept(next_batch());
 }
 
 // Poses that agree with every accepted loop; those that cannot be made to agree
@@ -172,9 +165,8 @@ typename Search<Pose>::Batch Search<Pose>::next_batch() const {
   Batch batch{"evidence", passing(required_odds_)};
   if (batch.loops.empty()) {
     Selection within = eligible;
-    if (parts_are_few()) std::erase_if(within, [&](Index k) { return !judge_.connected(k); });
-    batch = {"cluster",
-             strongest_clusters(support_, within, odds, alike_fraction_, required_odds_)};
+    if (few_parts()) std::erase_if(within, [&](Index k) { return !judge_.connected(k); });
+    batch = clusters_of(within, odds);
   }
   if (!batch.loops.empty() || !take_likely_) return batch;
   batch = {"prior", passing(0.0)};
@@ -185,17 +177,14 @@ typename Search<Pose>::Batch Search<Pose>::next_batch() const {
 // Hundreds of pieces of broken odometry are joined by clusters, whose loops are mostly
 // short; each trial would tell little. The joint between a few parts decides of all.
 template <class Pose>
-bool Search<Pose>::parts_are_few() const {
-  return estimate_.component_count() <= kFewParts;
+bool Search<Pose>::few_parts() const {
+  return estimate_.component_count() > 1 && estimate_.component_count() <= kFewParts;
 }
 
-// Where no trial decided.
 template <class Pose>
-bool Search<Pose>::accept_between_parts() {
-  const Batch batch{"cluster", strongest_clusters(support_, in_question(), judge_.log_odds(),
-                                                  alike_fraction_, required_odds_)};
-  if (!batch.loops.empty()) accept(batch);
-  return !batch.loops.empty();
+typename Search<Pose>::Batch Search<Pose>::clusters_of(const Selection& eligible,
+                                                       const std::vector<double>& odds) const {
+  return {"cluster", strongest_clusters(support_, eligible, odds, alike_fraction_, required_odds_)};
 }
 
 // Short loops between parts that nothing joins: broken odometry. They have no evidence
@@ -211,8 +200,10 @@ typename Search<Pose>::Selection Search<Pose>::bridges(const Selection& eligible
   return most_certain_third(std::move(loops), odds, options_.significance);
 }
 
+// False if there is none.
 template <class Pose>
-void Search<Pose>::accept(const Batch& batch) {
+bool Search<Pose>::accept(const Batch& batch) {
+  if (batch.loops.empty()) return false;
   const int round = static_cast<int>(rounds_.size()) + 1;
   for (const Index k : batch.loops) {
     accepted_[k] = true;
@@ -224,6 +215,7 @@ void Search<Pose>::accept(const Batch& batch) {
   summary.in_force = accepted_count();
   summary.rule = batch.rule;
   rounds_.push_back(summary);
+  return true;
 }
 
 // Between the steps of a round, so that a stop is heeded soon.

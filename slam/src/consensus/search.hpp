@@ -47,8 +47,7 @@ class Search {
     typename Estimate<Pose>::Layout layout;
   };
 
-  bool parts_are_few() const;
-  bool accept_between_parts();
+  bool few_parts() const;
   bool join_on_trial();
   std::size_t witnesses(const std::vector<Selection>& groups, std::size_t tried);
   bool reconsider();
@@ -59,7 +58,6 @@ class Search {
   void accept_and_calibrate(int most_calibrations);
   bool odometry_leaves_none() const;
   void accept_while_possible();
-  bool accept_next_batch();
   bool readmit();
   void settle();
   void assess();
@@ -67,7 +65,8 @@ class Search {
   Selection in_question() const;
   Batch next_batch() const;
   Selection bridges(const Selection& eligible, const std::vector<double>& odds) const;
-  void accept(const Batch& batch);
+  bool accept(const Batch& batch);
+  Batch clusters_of(const Selection& eligible, const std::vector<double>& odds) const;
   void learn_from_decided();
   bool calibrate();
   void judge_anew();
