@@ -94,7 +94,16 @@ class Localization {
   // a node that hardly anything else holds any length would be.
   bool fits(std::size_t k) const {
     const auto& check = checks_[k];
-    return check.chi2 - (use_[k] ? 0.0 : std::log(check.redundancy)) <= gate_;
+    if (use_[k]) return check.chi2 <= gate_;
+    return check.chi2 - std::log(check.redundancy) <= gate_ && is_predicted(k);
+  }
+
+  // Whether the other ranges say how long one is, as far as that can be said with derivatives:
+  // a node that may be elsewhere altogether is pulled there by the wrong range.
+  bool is_predicted(std::size_t k) const {
+    constexpr double kOfLength = 0.25;
+    const double deviation = problem_.sigmas[k] * std::sqrt(1.0 / checks_[k].redundancy - 1.0);
+    return deviation <= kOfLength * problem_.ranges[k].distance;
   }
 
   bool keeps_untested(std::size_t k) const { return use_[k] && !checks_[k].is_tested(); }

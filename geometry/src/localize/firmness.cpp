@@ -8,6 +8,8 @@
 #include "isotherm/base/parallel.hpp"
 #include "localize/crowd.hpp"
 #include "localize/evidence.hpp"
+#include "localize/fold_axes.hpp"
+#include "localize/fold_trial.hpp"
 #include "localize/hinge_parts.hpp"
 #include "localize/mirror_image.hpp"
 #include "localize/multilateration.hpp"
@@ -90,6 +92,7 @@ class Firmness {
     auto firm = with(body);
     const auto all = spread(firm, std::move(body), evidence_.limits, bound);
     release_turning_parts(firm);
+    release_folding_parts(firm);
     auto result = firm.placed;
     for (const Index v : all) {
       if (problem_.is_anchor[v] || !result[v]) continue;
@@ -109,6 +112,23 @@ class Firmness {
         for (const Index w : part) rest.placed[w] = problem_.is_anchor[w];
         if (is_fixed(part, rest)) continue;
         for (const Index w : part) firm.placed[w] = problem_.is_anchor[w];
+      }
+    }
+  }
+
+  // Takes out what is elsewhere in a mirror image of a part that fits nearly as well.
+  void release_folding_parts(Placement& firm) const {
+    for (bool any = true; any;) {
+      any = false;
+      const Crowd crowd(problem_, firm, evidence_.absence);
+      for (const auto& fold : find_folds(problem_, trusted_, evidence_.limits, options_, firm)) {
+        const bool is_whole = std::all_of(fold.part.begin(), fold.part.end(),
+                                          [&](Index v) { return firm.placed[v]; });
+        if (!is_whole) continue;
+        const auto outcome = try_fold(problem_, trusted_, gate_, evidence_, crowd, firm, fold);
+        if (outcome.extra >= clear_) continue;
+        for (const Index v : outcome.moved) firm.placed[v] = false;
+        any = any || !outcome.moved.empty();
       }
     }
   }

@@ -10,6 +10,7 @@
 #include "localize/firmness.hpp"
 #include "localize/grow.hpp"
 #include "localize/grown_parts.hpp"
+#include "localize/open_folds.hpp"
 #include "localize/patch.hpp"
 #include "localize/path_map.hpp"
 #include "localize/placing.hpp"
@@ -18,6 +19,8 @@
 
 namespace isotherm::geometry::detail {
 namespace {
+
+constexpr double kFair = 0.5;  // of the nodes, that are firm in a map which is right as a whole
 
 // How maps are started, and brought together.
 class Start {
@@ -100,21 +103,32 @@ class Start {
     double credit = 0.0;
   };
 
+  bool is_firm(const Candidate& candidate, double part) const {
+    return placed_count(candidate.firm) >= part * problem_.nodes;
+  }
+
   Candidate candidate(Placement placement) const {
     complete(placement);
     Candidate result;
-    result.firm = placement;
-    result.firm.placed = firm_nodes(problem_, trusted_, gate_, options_, placement);
     result.all = std::move(placement);
-    result.credit = agreement(problem_, trusted_, gate_, result.firm).credit -
-                    absence_cost(problem_, evidence_.absence, result.firm);
+    examine(result);
     return result;
+  }
+
+  // Without the folds that can be opened; in a map that is wrong almost everywhere there are too
+  // many.
+  Candidate opened(Candidate candidate) const {
+    if (is_firm(candidate, kFair) &&
+        open_folds(problem_, trusted_, gate_, options_, candidate.all) > 0) {
+      examine(candidate);
+    }
+    return candidate;
   }
 
   // Of a candidate and the one that some parts make, that of which more is explained.
   Candidate better(Candidate best, std::vector<Placement> parts) const {
     auto rival = candidate(together(std::move(parts)));
-    return rival.credit > best.credit ? std::move(rival) : std::move(best);
+    return rival.credit > best.credit ? opened(std::move(rival)) : std::move(best);
   }
 
   // Places anew what is not firm, as long as more becomes so.
@@ -123,12 +137,19 @@ class Start {
     for (int round = 0; round < kMostRounds; ++round) {
       auto again = candidate(best.firm);
       if (again.credit <= best.credit) break;
-      best = std::move(again);
+      best = opened(std::move(again));
     }
     return best;
   }
 
  private:
+  void examine(Candidate& candidate) const {
+    candidate.firm = candidate.all;
+    candidate.firm.placed = firm_nodes(problem_, trusted_, gate_, options_, candidate.all);
+    candidate.credit = agreement(problem_, trusted_, gate_, candidate.firm).credit -
+                       absence_cost(problem_, evidence_.absence, candidate.firm);
+  }
+
   const RangeProblem& problem_;
   RangeProblem free_;  // of anchors
   const Placement& anchors_;
@@ -166,15 +187,14 @@ Placement place_initially(const RangeProblem& problem, const Placement& anchors,
     place_more(problem, gate, {{}, {gate, gate}}, stitched);
     return stitched;
   }
-  auto best = start.candidate(std::move(stitched));
+  auto best = start.opened(start.candidate(std::move(stitched)));
   // A start of which this part is firm needs no rival, or not the last one.
-  const auto is_firm = [&](double part) { return placed_count(best.firm) >= part * problem.nodes; };
   constexpr double kGood = 0.95;
-  constexpr double kFair = 0.5;
-  if (!is_firm(kGood)) best = start.better(std::move(best), start.by_paths());
-  if (!is_firm(kGood)) best = start.better(std::move(best), start.stitched_and_unfolded());
-  if (!is_firm(kFair)) best = start.better(std::move(best), start.grown());
-  if (!is_firm(kGood)) best = start.repair(std::move(best));
+  if (!start.is_firm(best, kGood)) best = start.better(std::move(best), start.by_paths());
+  if (!start.is_firm(best, kGood))
+    best = start.better(std::move(best), start.stitched_and_unfolded());
+  if (!start.is_firm(best, kFair)) best = start.better(std::move(best), start.grown());
+  if (!start.is_firm(best, kGood)) best = start.repair(std::move(best));
   return std::move(best.all);
 }
 

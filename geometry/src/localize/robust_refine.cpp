@@ -36,11 +36,7 @@ class Stages {
       : problem_(problem), placement_(placement), options_(options) {}
 
   void fit(double width, int max_iterations) {
-    constexpr double kReach = 4.0;  // widths beyond which a range has no say
-    const auto use = ranges_within(problem_, placement_, std::pow(kReach * width, 2));
-    const auto outcome =
-        refine(problem_, use, placement_,
-               {.width = width, .max_iterations = max_iterations, .progress = options_.progress});
+    const auto outcome = refine_at_width(problem_, width, max_iterations, options_, placement_);
     total_.iterations += outcome.iterations;
     total_.converged = outcome.converged;
   }
@@ -64,6 +60,14 @@ std::vector<bool> ranges_within(const RangeProblem& problem, const Placement& pl
                 std::pow(deviation_of(problem, placement, k), 2) <= gate;
   }
   return within;
+}
+
+RefineOutcome refine_at_width(const RangeProblem& problem, double width, int max_iterations,
+                              const LocalizeOptions& options, Placement& placement) {
+  constexpr double kReach = 4.0;  // widths beyond which a range has no say
+  const auto use = ranges_within(problem, placement, std::pow(kReach * width, 2));
+  return refine(problem, use, placement,
+                {.width = width, .max_iterations = max_iterations, .progress = options.progress});
 }
 
 RefineOutcome refine_robustly(const RangeProblem& problem, const std::vector<bool>& trusted,

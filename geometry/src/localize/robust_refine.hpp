@@ -12,6 +12,11 @@ namespace isotherm::geometry::detail {
 std::vector<bool> ranges_within(const RangeProblem& problem, const Placement& placement,
                                 double gate);
 
+/// Moves the nodes to a minimum of Geman and McClure's loss of this width, in standard
+/// deviations, of the ranges that are not far outside it. @throws Cancelled
+RefineOutcome refine_at_width(const RangeProblem& problem, double width, int max_iterations,
+                              const LocalizeOptions& options, Placement& placement);
+
 /// Robust refinement from a rough start: the loss narrows from where half of the ranges
 /// are well inside down to `sqrt(gate)` standard deviations, ranges far outside
 /// being left out of each stage (a false range between far nodes would fill the

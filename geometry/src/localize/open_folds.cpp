@@ -1,0 +1,69 @@
+#include "localize/open_folds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "localize/fold_trial.hpp"
+#include "localize/robust_refine.hpp"
+
+namespace isotherm::geometry::detail {
+namespace {
+
+// The mirror images by which a map gains, those that gain most first.
+std::vector<FoldOutcome> gains(const RangeProblem& problem, const std::vector<bool>& trusted,
+                               double gate, const LocalizeOptions& options,
+                               const Placement& placement) {
+  constexpr double kGain = 2.0;  // of the cost, for which a fold is worth opening
+  const auto evidence = learn_evidence(problem, trusted, gate, placement);
+  const Crowd crowd(problem, placement, evidence.absence);
+  std::vector<FoldOutcome> better;
+  for (const auto& fold : find_folds(problem, trusted, evidence.limits, options, placement)) {
+    auto outcome = try_fold(problem, trusted, gate, evidence, crowd, placement, fold);
+    if (outcome.extra < -kGain && !outcome.moved.empty()) better.push_back(std::move(outcome));
+  }
+  std::stable_sort(better.begin(), better.end(),
+                   [](const FoldOutcome& a, const FoldOutcome& b) { return a.extra < b.extra; });
+  return better;
+}
+
+// Moves the nodes of those that have no node, and no neighbour of one, in common with those before.
+Index take(const RangeProblem& problem, const std::vector<FoldOutcome>& outcomes,
+           Placement& placement) {
+  std::vector<bool> touched(problem.nodes, false);
+  Index taken = 0;
+  for (const auto& outcome : outcomes) {
+    const bool overlaps = std::any_of(outcome.moved.begin(), outcome.moved.end(),
+                                      [&](Index v) { return touched[v]; });
+    if (overlaps) continue;
+    ++taken;
+    for (std::size_t k = 0; k < outcome.moved.size(); ++k) {
+      const Index v = outcome.moved[k];
+      placement.positions.col(v) = outcome.positions.col(static_cast<Eigen::Index>(k));
+      touched[v] = true;
+      for (const auto& neighbour : problem.pair_graph.neighbours(v)) {
+        touched[neighbour.vertex] = true;
+      }
+    }
+  }
+  return taken;
+}
+
+}  // namespace
+
+Index open_folds(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
+                 const LocalizeOptions& options, Placement& placement) {
+  constexpr int kMostRounds = 6;
+  constexpr int kIterations = 12;
+  Index opened = 0;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const auto taken = take(problem, gains(problem, trusted, gate, options, placement), placement);
+    if (taken == 0) break;
+    opened += taken;
+    refine_at_width(problem, std::sqrt(gate), kIterations, options, placement);
+  }
+  if (opened > 0) refine_robustly(problem, trusted, gate, options, placement);
+  return opened;
+}
+
+}  // namespace isotherm::geometry::detail
