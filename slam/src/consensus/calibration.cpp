@@ -11,7 +11,8 @@
 namespace isotherm::slam::detail {
 namespace {
 
-constexpr double kMargin = 10.0;        // over what short cycles say of odometry
+constexpr double kMargin = 5.0;         // over what short cycles say of odometry
+constexpr double kSame = 1e-9;          // of two measurements
 constexpr double kLargestChange = 2.0;  // of a factor, in one step
 constexpr double kWorthRescaling = 1.1;
 constexpr int kSteps = 6;  // of Gauss-Newton
@@ -20,14 +21,22 @@ double moved(double present, double wanted, double least) {
   return std::max(least, std::clamp(wanted, present / kLargestChange, present * kLargestChange));
 }
 
+// A loop that repeats the measurement of another says nothing of how accurate either is.
+template <class Pose>
+bool is_copy(const Link<Pose>& a, const Link<Pose>& b) {
+  return (a.T_a_b.inverse() * b.T_a_b).log().norm() < kSame;
+}
+
 bool differ(double a, double b) { return std::abs(std::log(a / b)) >= std::log(kWorthRescaling); }
 
 }  // namespace
 
 template <class Pose>
 void Calibration<Pose>::learn_from_cycles(const MapVolume<Pose>& map) {
-  for (const Evidence& evidence : compare_pairs(graph_, pairs_, map, {})) {
-    cycle_chi2_.push_back(evidence.chi2);
+  const auto evidence = compare_pairs(graph_, pairs_, map, {});
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    const bool copied = is_copy(graph_.loops[pairs_[k].first], graph_.loops[pairs_[k].second]);
+    cycle_chi2_.push_back(copied ? 0.0 : evidence[k].chi2);
   }
   least_odometry_ = least_odometry(cycle_chi2_);
   scale_.odometry = least_odometry_;
@@ -36,26 +45,27 @@ void Calibration<Pose>::learn_from_cycles(const MapVolume<Pose>& map) {
 template <class Pose>
 bool Calibration<Pose>::learn_from_accepted(const Estimate<Pose>& estimate,
                                             const std::vector<bool>& accepted,
-                                            const std::vector<double>& probability) {
+                                            const std::vector<double>& probability,
+                                            double tail_share) {
   std::vector<double> chi2;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     if (accepted[pairs_[k].first] && accepted[pairs_[k].second]) chi2.push_back(cycle_chi2_[k]);
   }
   least_odometry_ = std::min(least_odometry_, least_odometry(chi2));
 
-  // Short cycles go through loops as well: where they close better than stated, loops do.
-  const CovarianceScale shown = {scale_.odometry, scale_.loops * least_odometry_};
-  const auto telling = telling_loops(graph_, estimate, accepted, shown);
+  const auto telling = telling_loops(graph_, estimate, accepted, shown());
   Estimate<Pose> from_telling(graph_);
   from_telling.restore(estimate.layout());
-  from_telling.update(telling, scale_, kSteps);
-  const auto wanted = variance_components(graph_, from_telling, telling, probability, scale_);
+  from_telling.update(telling, scale(), kSteps);
+  const auto wanted = variance_components(graph_, from_telling, telling, probability, scale());
   const CovarianceScale next = {moved(scale_.odometry, wanted.odometry, least_odometry_),
                                 moved(scale_.loops, wanted.loops, 1.0)};
   const double level = wanted.loops / next.loops;
   const bool rescaled = differ(next.odometry, scale_.odometry) || differ(next.loops, scale_.loops);
-  const bool changed = rescaled || differ(level, loop_level_);
+  const double tightened = std::clamp(tightened_ * tail_share, tightened_ / kLargestChange, 1.0);
+  const bool changed = rescaled || differ(level, loop_level_) || differ(tightened, tightened_);
   if (rescaled) scale_ = next;
+  tightened_ = tightened;
   loop_level_ = level;
   return changed;
 }

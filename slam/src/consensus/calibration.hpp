@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -11,8 +12,9 @@ namespace isotherm::slam::detail {
 /// What the data say about the covariances that the file states.
 ///
 /// Odometry's may be widened, or tightened as far as short cycles of loops and odometry
-/// vouch for; those see no slow drift, so that a margin is left. Loops' are only widened:
-/// real ones have heavy tails, and what the file claims of a loop is never tightened.
+/// vouch for; those see no slow drift, so that a margin is left. Loops' are tightened only
+/// as far as the tail of the accepted ones lets the correct ones stay: real errors have
+/// heavy tails.
 template <class Pose>
 class Calibration {
  public:
@@ -21,20 +23,29 @@ class Calibration {
   /// `pairs` (near_pairs) are the short cycles. Both must outlive this object.
   Calibration(const ReducedGraph<Pose>& graph, const Pairs& pairs) : graph_(graph), pairs_(pairs) {}
 
-  const CovarianceScale& scale() const noexcept { return scale_; }
+  /// The factors on what the file states.
+  CovarianceScale scale() const { return {scale_.odometry, scale_.loops * tightened_}; }
 
-  /// Mean chi-squared a degree of freedom of the accepted loops at this scale, as last
-  /// learnt; 1 before. Below 1 where the file understates how accurate they are.
+  /// The same, but loops as accurate as short cycles show, which go through them as well:
+  /// most are, if not the worst.
+  CovarianceScale shown() const {
+    return {scale_.odometry, scale_.loops * std::min(tightened_, least_odometry_)};
+  }
+
+  /// Mean chi-squared a degree of freedom of the accepted loops where their covariances
+  /// are only widened, as last learnt; 1 before. Below 1 where the file understates how
+  /// accurate they are.
   double loop_level() const noexcept { return loop_level_; }
 
   /// Odometry's covariance from the short cycles of all loops, true and false. Comes
   /// before learn_from_accepted().
   void learn_from_cycles(const MapVolume<Pose>& map);
 
-  /// One step of variance components from the accepted loops. True if the scale or the
+  /// One step of variance components from the accepted loops. `tail_share` is how far out
+  /// their errors reach, as a share of what the scale allows. True if the scale or the
   /// level has changed so much that loops should be judged again.
   bool learn_from_accepted(const Estimate<Pose>& estimate, const std::vector<bool>& accepted,
-                           const std::vector<double>& probability);
+                           const std::vector<double>& probability, double tail_share);
 
   void double_odometry() { scale_.odometry *= 2.0; }
 
@@ -44,9 +55,10 @@ class Calibration {
   const ReducedGraph<Pose>& graph_;
   const Pairs& pairs_;
   std::vector<double> cycle_chi2_;  // one a pair, at the covariances of the file
-  CovarianceScale scale_;
+  CovarianceScale scale_;           // variance components; of loops at least 1
   double least_odometry_ = 1.0;
   double loop_level_ = 1.0;
+  double tightened_ = 1.0;  // loops' covariances on top of that; at most 1
 };
 
 extern template class Calibration<Pose2>;

@@ -1,34 +1,37 @@
 #include "judge.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "isotherm/base/statistics.hpp"
 #include "prediction.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
 
-// An accepted loop is dropped beyond twice the deviations that an average one would
-// need to meet the gate: real errors have heavy tails, and where it was accepted it had
-// evidence of its own.
-constexpr double kDropFactor = 4.0;
+// However heavy the tails of real errors, an accepted loop is dropped beyond twice the
+// deviations that an average one would need to meet the gate.
+constexpr double kMostDropFactor = 4.0;
 
 }  // namespace
 
 template <class Pose>
 Judge<Pose>::Judge(const ReducedGraph<Pose>& graph, const Estimate<Pose>& estimate,
                    const Calibration<Pose>& calibration, const MapVolume<Pose>& map,
-                   const std::vector<bool>& accepted, double gate)
+                   const std::vector<bool>& accepted, double significance)
     : graph_(graph),
       estimate_(estimate),
       calibration_(calibration),
       map_(map),
       accepted_(accepted),
-      gate_(gate),
+      significance_(significance),
+      gate_(chi_squared_quantile(1.0 - significance, Pose::kDof)),
+      tail_{gate_, kMostDropFactor},
       standings_(graph.loops.size()) {}
 
 template <class Pose>
 double Judge<Pose>::drop_gate() const {
-  return gate_ * std::max(1.0, kDropFactor * calibration_.loop_level());
+  return gate_ * std::max(1.0, std::min(tail_.factor, kMostDropFactor) * calibration_.loop_level());
 }
 
 template <class Pose>
@@ -82,13 +85,25 @@ Evidence Judge<Pose>::weigh(Index loop) const {
 
 template <class Pose>
 typename Judge<Pose>::Selection Judge<Pose>::inconsistent() {
-  const double gate = drop_gate();
+  const double before = drop_gate();
+  Selection doubtful = misfits();
+  learn_tail();
+  if (drop_gate() < before) doubtful = misfits();
+  double worst = 0.0;
+  for (const Index k : doubtful) worst = std::max(worst, evidence(k).chi2);
+  std::erase_if(doubtful, [&](Index k) { return evidence(k).chi2 < 0.5 * worst; });
+  return doubtful;
+}
+
+// The accepted loops beyond the gate.
+template <class Pose>
+typename Judge<Pose>::Selection Judge<Pose>::misfits() {
   const auto fits = [&](Index loop) {
     auto& standing = standings_[loop];
     const auto& link = graph_.loops[loop];
     standing.evidence.chi2 = fitted_chi2(link, estimate_.residual(link), standing.covariance,
                                          calibration_.scale().loops);
-    return standing.evidence.chi2 <= gate;
+    return standing.evidence.chi2 <= drop_gate();
   };
   // An old covariance is an upper bound, and so is the chi-squared it gives.
   Selection doubtful;
@@ -97,17 +112,22 @@ typename Judge<Pose>::Selection Judge<Pose>::inconsistent() {
     if (accepted_[k] && (!standings_[k].fit_known || !fits(loop))) doubtful.push_back(loop);
   }
   const auto covariances = estimate_.relative_covariances(doubtful);
-  double worst = 0.0;
   for (std::size_t k = 0; k < doubtful.size(); ++k) {
-    auto& standing = standings_[doubtful[k]];
-    standing.covariance = covariances[k];
-    standing.fit_known = true;
-    fits(doubtful[k]);
-    worst = std::max(worst, standing.evidence.chi2);
+    standings_[doubtful[k]].covariance = covariances[k];
+    standings_[doubtful[k]].fit_known = true;
   }
-  if (worst <= gate) return {};
-  std::erase_if(doubtful, [&](Index k) { return evidence(k).chi2 < std::max(gate, 0.5 * worst); });
+  std::erase_if(doubtful, fits);
   return doubtful;
+}
+
+template <class Pose>
+void Judge<Pose>::learn_tail() {
+  std::vector<double> chi2;
+  for (std::size_t k = 0; k < standings_.size(); ++k) {
+    if (accepted_[k]) chi2.push_back(standings_[k].evidence.chi2);
+  }
+  tail_ = chi2.empty() ? Tail{gate_, kMostDropFactor}
+                       : student_tail(std::move(chi2), Pose::kDof, significance_);
 }
 
 template <class Pose>

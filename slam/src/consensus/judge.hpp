@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "calibration.hpp"
 #include "estimate.hpp"
+#include "heavy_tail.hpp"
 #include "map_volume.hpp"
 #include "prior_by_span.hpp"
 #include "reduced_graph.hpp"
@@ -28,15 +30,16 @@ class Judge {
     Evidence evidence;
   };
 
-  /// All must outlive this object. `accepted` has one entry a loop; chi-squared of a
-  /// correct loop stays below `gate`.
+  /// All must outlive this object. `accepted` has one entry a loop; a correct loop is
+  /// beyond the gate with probability `significance`.
   Judge(const ReducedGraph<Pose>& graph, const Estimate<Pose>& estimate,
         const Calibration<Pose>& calibration, const MapVolume<Pose>& map,
-        const std::vector<bool>& accepted, double gate);
+        const std::vector<bool>& accepted, double significance);
 
   double gate() const noexcept { return gate_; }
 
-  /// The gate of accepted loops.
+  /// The gate of accepted loops: real errors have heavy tails, and where a loop was
+  /// accepted it had evidence of its own.
   double drop_gate() const;
 
   const Evidence& evidence(Index loop) const { return standings_[loop].evidence; }
@@ -57,6 +60,10 @@ class Judge {
 
   /// Solves for `loops` and weighs them.
   void weigh_afresh(const Selection& loops);
+
+  /// Of the accepted loops, as a share of the gate, at most 1: where it is below, loops
+  /// are more accurate than stated, heavy tails included.
+  double tail_share() const { return std::min(1.0, tail_.quantile / gate_); }
 
   /// The accepted loops that disagree most with the others; none if all agree.
   Selection inconsistent();
@@ -79,13 +86,17 @@ class Judge {
 
  private:
   Evidence weigh(Index loop) const;
+  Selection misfits();
+  void learn_tail();
 
   const ReducedGraph<Pose>& graph_;
   const Estimate<Pose>& estimate_;
   const Calibration<Pose>& calibration_;
   const MapVolume<Pose>& map_;
   const std::vector<bool>& accepted_;
+  double significance_;
   double gate_;
+  Tail tail_;
   std::vector<Standing> standings_;
   PriorBySpan prior_;
 };

@@ -8,7 +8,6 @@
 #include "batches.hpp"
 #include "conflicts.hpp"
 #include "isotherm/base/error.hpp"
-#include "isotherm/base/statistics.hpp"
 #include "near_pairs.hpp"
 
 namespace isotherm::slam::detail {
@@ -40,8 +39,7 @@ Search<Pose>::Search(const ReducedGraph<Pose>& graph, const ConsensusOptions& op
       calibration_(graph, near_pairs_),
       records_(graph.loops.size()),
       accepted_(graph.loops.size(), false),
-      judge_(graph, estimate_, calibration_, map_, accepted_,
-             chi_squared_quantile(1.0 - options.significance, Pose::kDof)) {
+      judge_(graph, estimate_, calibration_, map_, accepted_, options.significance) {
   if (options.calibrate) calibration_.learn_from_cycles(map_);
   judge_anew();
 }
@@ -244,7 +242,8 @@ template <class Pose>
 bool Search<Pose>::calibrate() {
   std::vector<double> probability = judge_.log_odds();
   for (double& p : probability) p = 1.0 / (1.0 + std::exp(-p));
-  const bool changed = calibration_.learn_from_accepted(estimate_, accepted_, probability);
+  const bool changed =
+      calibration_.learn_from_accepted(estimate_, accepted_, probability, judge_.tail_share());
   if (changed) judge_anew();
   return changed;
 }
@@ -254,7 +253,7 @@ template <class Pose>
 void Search<Pose>::judge_anew() {
   for (auto& record : records_) record.drops = 0;
   judge_.forget_bounds();
-  support_ = mutual_support(graph_, near_pairs_, map_, calibration_.scale(), judge_.gate());
+  support_ = mutual_support(graph_, near_pairs_, map_, calibration_.shown(), judge_.gate());
 }
 
 template <class Pose>

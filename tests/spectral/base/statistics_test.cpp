@@ -38,6 +38,20 @@ TEST(ChiSquared, EndsAndBadArguments) {
   EXPECT_THROW(chi_squared_upper_tail(std::nan(""), 3), InvalidArgument);
 }
 
+TEST(FisherF, PublishedQuantile) { EXPECT_NEAR(f_quantile(0.95, 3, 10), 3.708265, 1e-6); }
+
+TEST(FisherF, IsChiSquaredOverItsDegreesWhereTheOtherHasMany) {
+  for (const double p : {0.1, 0.5, 0.999}) {
+    EXPECT_NEAR(f_quantile(p, 6, 1e9), chi_squared_quantile(p, 6) / 6.0, 1e-6);
+  }
+}
+
+TEST(FisherF, BadArguments) {
+  EXPECT_THROW(f_quantile(1.0, 3, 3), InvalidArgument);
+  EXPECT_THROW(f_quantile(0.5, 0, 3), InvalidArgument);
+  EXPECT_THROW(f_quantile(0.5, 3, std::nan("")), InvalidArgument);
+}
+
 TEST(Median, IsTheMiddleOneOrTheMeanOfTwo) {
   EXPECT_EQ(median({7.0}), 7.0);
   EXPECT_EQ(median({9.0, 1.0, 4.0}), 4.0);

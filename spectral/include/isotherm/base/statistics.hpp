@@ -17,4 +17,9 @@ double chi_squared_quantile(double probability, int dof);
 /// @throws InvalidArgument for a negative or NaN value or for dof < 1.
 double chi_squared_upper_tail(double value, int dof);
 
+/// The value that the ratio of two independent chi-squared variables, each over its
+/// degrees of freedom, stays below with the given probability (Fisher's F distribution).
+/// @throws InvalidArgument for a probability outside [0, 1) or degrees that are not positive.
+double f_quantile(double probability, double dof, double dof_below);
+
 }  // namespace isotherm
