@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <iterator>
+#include <set>
+#include <unordered_map>
 #include <utility>
 
 #include "isotherm/base/parallel.hpp"
@@ -36,12 +38,10 @@ class Search {
   void add_folds_through(Index node, std::vector<Fold>& found) {
     for (const auto& [vertex, edge] : problem_.pair_graph.neighbours(node)) {
       if (vertex < node || !trusted_[edge] || !placement_.placed[vertex]) continue;
-      const Point along = placement_.positions.col(vertex) - placement_.positions.col(node);
-      const double length = along.norm();
-      if (!(length > 0.0)) continue;
-      axis_.through = placement_.positions.col(node);
-      axis_.normal = Point(2);
-      axis_.normal << -along[1] / length, along[0] / length;
+      through_ = placement_.positions.col(node);
+      const Eigen::Vector2d along = placement_.positions.col(vertex) - through_;
+      if (!(along.norm() > 0.0)) continue;
+      normal_ = Eigen::Vector2d(-along.y(), along.x()).normalized();
       ++axis_number_;
       for (const Index end : {node, vertex}) add_folds_beside(end, found);
     }
@@ -101,11 +101,9 @@ class Search {
 
   void add_fold(std::vector<Index> part, std::vector<Fold>& found) const {
     std::sort(part.begin(), part.end());
-    auto fold = axis_;
-    fold.cost = cost_of(part);
-    if (fold.cost > kMostBroken * limits_.least()) return;
-    fold.part = std::move(part);
-    found.push_back(std::move(fold));
+    const double cost = cost_of(part);
+    if (cost > kMostBroken * limits_.least()) return;
+    found.push_back({std::move(part), through_, normal_, cost});
   }
 
   double cost_of(const std::vector<Index>& part) const {
@@ -124,11 +122,14 @@ class Search {
   double extra(Index turned, Index other, Index edge) const {
     if (!trusted_[edge]) return 0.0;
     const auto& pair = problem_.pairs[edge];
-    const Point own = placement_.positions.col(turned);
-    const Point there = placement_.positions.col(other);
-    return cost_of(pair, (axis_.mirrored(own) - there).norm()) -
-           cost_of(pair, (own - there).norm());
+    const Eigen::Vector2d arm = placement_.positions.col(turned) - placement_.positions.col(other);
+    const double squared = arm.squaredNorm();
+    const double mirrored = std::max(0.0, squared + 4.0 * height(turned) * height(other));
+    return cost_of(pair, std::sqrt(mirrored)) - cost_of(pair, std::sqrt(squared));
   }
+
+  // Above the axis.
+  double height(Index node) const { return normal_.dot(placement_.positions.col(node) - through_); }
 
   double cost_of(const RangePair& pair, double length) const {
     const double r = (length - pair.distance) / pair.sigma;
@@ -139,15 +140,48 @@ class Search {
   const std::vector<bool>& trusted_;
   const Limits& limits_;
   const Placement& placement_;
-  double breaking_;  // what a fold must cost a pair to break it
-  Index most_;       // nodes of a part
-  Fold axis_;
+  double breaking_;          // what a fold must cost a pair to break it
+  Index most_;               // nodes of a part
+  Eigen::Vector2d through_;  // the axis
+  Eigen::Vector2d normal_;
   int axis_number_ = 0;
   int part_number_ = 0;
   std::vector<int> known_;                    // the last axis at which the node was in a part
   std::vector<int> part_of_;                  // the last part that the node was in
   std::vector<std::pair<int, int>> strings_;  // a part, and by how many pairs it holds the node
 };
+
+// Whether most nodes of either part are in both.
+bool are_alike(const std::vector<Index>& a, const std::vector<Index>& b) {
+  constexpr double kMostly = 0.8;
+  const double least = kMostly * static_cast<double>(std::max(a.size(), b.size()));
+  if (static_cast<double>(std::min(a.size(), b.size())) < least) return false;
+  std::vector<Index> both;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
+  return static_cast<double>(both.size()) >= least;
+}
+
+// Each part in one line, and of parts that are alike a few: they differ by what is near the line.
+// Given the cheapest first.
+std::vector<Fold> cheapest_of_alike(std::vector<Fold> folds) {
+  constexpr int kMostAlike = 5;
+  std::vector<Fold> kept;
+  std::unordered_map<Index, std::vector<std::size_t>> kept_with;  // node -> places in `kept`
+  for (auto& fold : folds) {
+    std::set<std::size_t> rivals;
+    for (const Index v : fold.part) rivals.insert(kept_with[v].begin(), kept_with[v].end());
+    int alike = 0;
+    bool known = false;
+    for (const auto k : rivals) {
+      known = known || kept[k].part == fold.part;
+      alike += are_alike(kept[k].part, fold.part) ? 1 : 0;
+    }
+    if (known || alike >= kMostAlike) continue;
+    for (const Index v : fold.part) kept_with[v].push_back(kept.size());
+    kept.push_back(std::move(fold));
+  }
+  return kept;
+}
 
 }  // namespace
 
@@ -169,18 +203,11 @@ std::vector<Fold> find_folds(const RangeProblem& problem, const std::vector<bool
       if (placement.placed[v]) search.add_folds_through(v, found[block]);
     }
   });
-  std::map<std::vector<Index>, Fold> best;
-  for (auto& folds : found) {
-    for (auto& fold : folds) {
-      const auto [entry, added] = best.try_emplace(fold.part, fold);
-      if (!added && fold.cost < entry->second.cost) entry->second = fold;
-    }
-  }
   std::vector<Fold> folds;
-  for (auto& entry : best) folds.push_back(std::move(entry.second));
+  for (auto& some : found) std::move(some.begin(), some.end(), std::back_inserter(folds));
   std::stable_sort(folds.begin(), folds.end(),
                    [](const Fold& a, const Fold& b) { return a.cost < b.cost; });
-  return folds;
+  return cheapest_of_alike(std::move(folds));
 }
 
 }  // namespace isotherm::geometry::detail

@@ -22,8 +22,9 @@ struct Fold {
 /// of: reflected in it, they break few of the trusted pairs that tie them to the others, or
 /// stretch them little. A part is grown from two of its nodes over pairs that the fold would break
 /// and takes in nodes that two such pairs lead to, so that no single range, which may be
-/// false, joins what is on both sides of a hinge. Each part once, the cheapest fold first.
-/// Empty in space. O(pairs * 200 * degree) at most, in parallel.
+/// false, joins what is on both sides of a hinge. Each part once, and of parts that are nearly the
+/// same five; the cheapest fold first. Empty in space. O(pairs * 200 * degree) at most, in
+/// parallel.
 std::vector<Fold> find_folds(const RangeProblem& problem, const std::vector<bool>& trusted,
                              const Limits& limits, const LocalizeOptions& options,
                              const Placement& placement);

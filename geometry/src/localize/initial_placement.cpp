@@ -127,8 +127,8 @@ class Start {
 
   // Of a candidate and the one that some parts make, that of which more is explained.
   Candidate better(Candidate best, std::vector<Placement> parts) const {
-    auto rival = candidate(together(std::move(parts)));
-    return rival.credit > best.credit ? opened(std::move(rival)) : std::move(best);
+    auto rival = opened(candidate(together(std::move(parts))));
+    return rival.credit > best.credit ? std::move(rival) : std::move(best);
   }
 
   // Places anew what is not firm, as long as more becomes so.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "isotherm/base/parallel.hpp"
 #include "localize/fold_trial.hpp"
 #include "localize/robust_refine.hpp"
 
@@ -17,14 +18,19 @@ std::vector<FoldOutcome> gains(const RangeProblem& problem, const std::vector<bo
   constexpr double kGain = 2.0;  // of the cost, for which a fold is worth opening
   const auto evidence = learn_evidence(problem, trusted, gate, placement);
   const Crowd crowd(problem, placement, evidence.absence);
-  std::vector<FoldOutcome> better;
-  for (const auto& fold : find_folds(problem, trusted, evidence.limits, options, placement)) {
-    auto outcome = try_fold(problem, trusted, gate, evidence, crowd, placement, fold);
-    if (outcome.extra < -kGain && !outcome.moved.empty()) better.push_back(std::move(outcome));
-  }
-  std::stable_sort(better.begin(), better.end(),
+  const auto folds = find_folds(problem, trusted, evidence.limits, options, placement);
+  std::vector<FoldOutcome> outcomes(folds.size());
+  parallel_for(static_cast<std::int64_t>(folds.size()), options.threads, options.progress, "folds",
+               [&](std::int64_t k) {
+                 outcomes[k] =
+                     try_fold(problem, trusted, gate, evidence, crowd, placement, folds[k]);
+               });
+  std::erase_if(outcomes, [](const FoldOutcome& outcome) {
+    return outcome.extra >= -kGain || outcome.moved.empty();
+  });
+  std::stable_sort(outcomes.begin(), outcomes.end(),
                    [](const FoldOutcome& a, const FoldOutcome& b) { return a.extra < b.extra; });
-  return better;
+  return outcomes;
 }
 
 // Moves the nodes of those that have no node, and no neighbour of one, in common with those before.

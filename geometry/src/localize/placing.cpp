@@ -56,8 +56,9 @@ void place_more(const RangeProblem& problem, double gate, const Evidence& eviden
   }
 }
 
-Index relocate(const RangeProblem& problem, double gate, const Evidence& evidence,
-               const LocalizeOptions& options, Placement& placement) {
+std::vector<Index> relocate(const RangeProblem& problem, double gate, const Evidence& evidence,
+                            const LocalizeOptions& options, const std::vector<bool>& among,
+                            Placement& placement) {
   constexpr double kGain = 2.0;  // of the cost, for which a move is worth it
   Crowd crowd(problem, placement, evidence.absence);
   const auto surroundings = [&](Index node) {
@@ -67,7 +68,7 @@ Index relocate(const RangeProblem& problem, double gate, const Evidence& evidenc
   };
   std::vector<Index> suspects;
   for (Index v = 0; v < problem.nodes; ++v) {
-    if (!placement.placed[v] || problem.is_anchor[v]) continue;
+    if (!among[v] || !placement.placed[v] || problem.is_anchor[v]) continue;
     const auto network = star(problem, placement, v);
     const auto count = static_cast<int>(network.ranges.size());
     if (count <= problem.dimension) continue;
@@ -81,7 +82,7 @@ Index relocate(const RangeProblem& problem, double gate, const Evidence& evidenc
                "multilateration", [&](std::int64_t k) {
                  found[k] = multilaterate(surroundings(suspects[k]), evidence.limits);
                });
-  Index moved = 0;
+  std::vector<Index> moved;
   for (std::size_t k = 0; k < suspects.size(); ++k) {
     if (!found[k]) continue;
     // Neighbours may have moved in the meantime: both places are judged anew.
@@ -90,7 +91,7 @@ Index relocate(const RangeProblem& problem, double gate, const Evidence& evidenc
     network.positions.col(network.fixed) = found[k]->position;
     if (before - place_cost(network, evidence.limits) < kGain) continue;
     placement.positions.col(suspects[k]) = found[k]->position;
-    ++moved;
+    moved.push_back(suspects[k]);
   }
   return moved;
 }

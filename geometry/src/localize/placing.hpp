@@ -15,9 +15,10 @@ namespace isotherm::geometry::detail {
 void place_more(const RangeProblem& problem, double gate, const Evidence& evidence,
                 Placement& placement);
 
-/// Moves nodes with a range beyond the gate to where their neighbours agree on
-/// better, and nodes that stand beside others without a range to them. How many moved.
-Index relocate(const RangeProblem& problem, double gate, const Evidence& evidence,
-               const LocalizeOptions& options, Placement& placement);
+/// Moves those nodes `among` all that have a range beyond the gate, or stand beside others
+/// without a range to them, to where their neighbours agree on better. Which moved.
+std::vector<Index> relocate(const RangeProblem& problem, double gate, const Evidence& evidence,
+                            const LocalizeOptions& options, const std::vector<bool>& among,
+                            Placement& placement);
 
 }  // namespace isotherm::geometry::detail

@@ -30,6 +30,16 @@ double median_deviation(const RangeProblem& problem, const Placement& placement)
   return deviations.empty() ? 0.0 : lower_median(std::move(deviations));
 }
 
+// Nodes whose surroundings have changed.
+std::vector<bool> with_neighbours(const RangeProblem& problem, const std::vector<Index>& nodes) {
+  std::vector<bool> result(problem.nodes, false);
+  for (const Index v : nodes) {
+    result[v] = true;
+    for (const auto& neighbour : problem.pair_graph.neighbours(v)) result[neighbour.vertex] = true;
+  }
+  return result;
+}
+
 class Stages {
  public:
   Stages(const RangeProblem& problem, Placement& placement, const LocalizeOptions& options)
@@ -82,10 +92,13 @@ RefineOutcome refine_robustly(const RangeProblem& problem, const std::vector<boo
     stages.fit(width, kStageIterations);
   }
   stages.fit(narrow, kStageIterations);
+  std::vector<bool> among(problem.nodes, true);
   for (int round = 0; round < kMostRounds; ++round) {
     const auto evidence = learn_evidence(problem, trusted, gate, placement);
-    if (relocate(problem, gate, evidence, options, placement) == 0) break;
+    const auto moved = relocate(problem, gate, evidence, options, among, placement);
+    if (moved.empty()) break;
     stages.fit(narrow, kStageIterations);
+    among = with_neighbours(problem, moved);
   }
   return stages.total();
 }
