@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "loop_pair.hpp"
 #include "short_cycles.hpp"
@@ -11,20 +12,24 @@
 namespace isotherm::slam::detail {
 namespace {
 
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kMargin = 5.0;         // over what short cycles say of odometry
+constexpr double kLeeway = 5.0;         // above that, where they find it better than stated
 constexpr double kSame = 1e-9;          // of two measurements
 constexpr double kLargestChange = 2.0;  // of a factor, in one step
 constexpr double kWorthRescaling = 1.1;
 constexpr int kSteps = 6;  // of Gauss-Newton
 
-double moved(double present, double wanted, double least) {
-  return std::max(least, std::clamp(wanted, present / kLargestChange, present * kLargestChange));
+double moved(double present, double wanted, double least, double most) {
+  const double near = std::clamp(wanted, present / kLargestChange, present * kLargestChange);
+  return std::clamp(near, least, most);
 }
 
-// A loop that repeats the measurement of another says nothing of how accurate either is.
+// A loop that repeats the measurement of another says nothing of how accurate either is;
+// unless both say that the robot is back where it was, which simulators like to do.
 template <class Pose>
 bool is_copy(const Link<Pose>& a, const Link<Pose>& b) {
-  return (a.T_a_b.inverse() * b.T_a_b).log().norm() < kSame;
+  return (a.T_a_b.inverse() * b.T_a_b).log().norm() < kSame && a.T_a_b.log().norm() >= kSame;
 }
 
 bool differ(double a, double b) { return std::abs(std::log(a / b)) >= std::log(kWorthRescaling); }
@@ -58,8 +63,9 @@ bool Calibration<Pose>::learn_from_accepted(const Estimate<Pose>& estimate,
   from_telling.restore(estimate.layout());
   from_telling.update(telling, scale(), kSteps);
   const auto wanted = variance_components(graph_, from_telling, telling, probability, scale());
-  const CovarianceScale next = {moved(scale_.odometry, wanted.odometry, least_odometry_),
-                                moved(scale_.loops, wanted.loops, 1.0)};
+  const CovarianceScale next = {
+      moved(scale_.odometry, wanted.odometry, least_odometry_, most_odometry()),
+      moved(scale_.loops, wanted.loops, 1.0, kNoLimit)};
   const double level = wanted.loops / next.loops;
   const bool rescaled = differ(next.odometry, scale_.odometry) || differ(next.loops, scale_.loops);
   const double tightened = std::clamp(tightened_ * tail_share, tightened_ / kLargestChange, 1.0);
@@ -68,6 +74,16 @@ bool Calibration<Pose>::learn_from_accepted(const Estimate<Pose>& estimate,
   tightened_ = tightened;
   loop_level_ = level;
   return changed;
+}
+
+template <class Pose>
+double Calibration<Pose>::most_odometry() const {
+  return least_odometry_ < 1.0 ? kLeeway * least_odometry_ : kNoLimit;
+}
+
+template <class Pose>
+void Calibration<Pose>::double_odometry() {
+  scale_.odometry = std::min(2.0 * scale_.odometry, most_odometry());
 }
 
 template <class Pose>

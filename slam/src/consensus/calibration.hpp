@@ -47,9 +47,10 @@ class Calibration {
   bool learn_from_accepted(const Estimate<Pose>& estimate, const std::vector<bool>& accepted,
                            const std::vector<double>& probability, double tail_share);
 
-  void double_odometry() { scale_.odometry *= 2.0; }
+  void double_odometry();
 
  private:
+  double most_odometry() const;
   double least_odometry(const std::vector<double>& chi2) const;
 
   const ReducedGraph<Pose>& graph_;

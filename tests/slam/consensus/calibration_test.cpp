@@ -3,9 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include "consensus/calibration.hpp"
+#include "consensus/near_pairs.hpp"
 #include "consensus/prior_by_span.hpp"
 #include "consensus/short_cycles.hpp"
 #include "isotherm/base/random.hpp"
+#include "isotherm/slam/consensus.hpp"
+#include "isotherm/slam/corrupt.hpp"
+#include "isotherm/slam/simulate.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -52,6 +57,22 @@ TEST(CycleScale, SaysNothingOfCopies) {
   auto sample = chi_squared_sample(random, 1000, 3, 1.0);
   sample.insert(sample.end(), 5000, 1e-12);
   EXPECT_NEAR(cycle_scale(sample, 3), 1.0, 0.2);
+}
+
+// Short cycles of loops that share one measurement close nearly as well as if loops were
+// without errors.
+TEST(Calibration, GroupsThatRepeatOneMeasurementSayNothingOfAccuracy) {
+  const auto city =
+      simulate_city({.poses = 800,
+                     .measurements = {.loops = 100, .loop_sigma = 2.0, .loop_turn_sigma = 0.5},
+                     .seed = 7});
+  const auto bad = corrupt(city.graph, city.truth,
+                           {.type = NoiseType::local_grouped, .fraction = 0.8, .seed = 7});
+  const auto graph = reduce(bad.graph, edge_roles(bad.graph));
+  const auto pairs = near_pairs(graph, ConsensusOptions().window);
+  Calibration<Pose2> calibration(graph, pairs);
+  calibration.learn_from_cycles(MapVolume<Pose2>(graph.poses));
+  EXPECT_EQ(calibration.scale().odometry, 1.0);
 }
 
 TEST(PriorBySpan, IsEvenBeforeAnythingIsDecided) {
