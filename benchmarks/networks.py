@@ -6,9 +6,10 @@ usage: scripts/build.sh release
        $(scripts/python-env.sh) benchmarks/networks.py [--sizes N ...] [--budget SECONDS] [DATA]
 
 Every cell is kept in build/networks.json as soon as it is measured; a run that is
-stopped goes on where it was. --sizes takes networks of these numbers of nodes only, 0
-the real ranges; --budget stops measuring after so many seconds and writes what there is. DATA is the folder of data
-sets (default $ISOTHERM_DATA or ../shared/data).
+stopped goes on where it was. Cells with a field "earlier", of an earlier version, are marked on
+the page. --sizes takes networks of these numbers of nodes only, 0 the real ranges; --budget stops
+measuring after so many seconds and writes what there is. DATA is the folder of data sets (default
+$ISOTHERM_DATA or ../shared/data).
 """
 import argparse
 import csv
@@ -23,8 +24,10 @@ import tempfile
 import time
 
 import numpy as np
+from scipy.optimize import least_squares
 from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import dijkstra
+from scipy.sparse.csgraph import connected_components, dijkstra
+from scipy.sparse.linalg import LinearOperator, eigsh
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 COMMAND = os.environ.get("ISOTHERM", str(ROOT / "build/release/apps/isotherm"))
@@ -37,10 +40,6 @@ FAULTS = [("none", 0.0)] + list(itertools.product(("false", "biased"), (0.1, 0.2
 # The cells that matter most are measured first.
 BY_INTEREST = sorted(FAULTS, key=lambda fault: (0.2, 0.0, 0.1, 0.3).index(fault[1]))
 SEEDS = {100: (1, 2, 3), 1000: (1, 2, 3), 10000: (1,)}
-# With ranges between any two nodes shortest paths and plain least squares fill memory
-# with n^2 numbers, and the latter takes n^3 operations a step.
-MDS_MAP_UP_TO = 1000
-LEAST_SQUARES_UP_TO = 100
 
 
 def run(*arguments):
@@ -71,27 +70,86 @@ def align(points, targets, scale=False):
     return lambda x: factor * (x - a) @ (u @ vt).T + b
 
 
-def mds_map(folder, truth, anchors):
-    """Shortest paths, classical scaling, and the best similarity onto the anchors."""
-    rows = read_rows(folder / "ranges.csv")
-    names = sorted({row[end] for row in rows for end in ("from", "to")}, key=int)
-    place = {name: k for k, name in enumerate(names)}
-    i = [place[row["from"]] for row in rows]
-    j = [place[row["to"]] for row in rows]
-    graph = coo_matrix(([float(row["range"]) for row in rows], (i, j)), (len(names),) * 2).tocsr()
-    length = dijkstra(graph, directed=False)
-    start = place[max(anchors, key=lambda v: np.isfinite(length[place[v]]).sum() if v in place else 0)]
-    inside = np.flatnonzero(np.isfinite(length[start]))
-    squared = length[np.ix_(inside, inside)] ** 2
-    centre = np.eye(len(inside)) - 1.0 / len(inside)
-    values, vectors = np.linalg.eigh(-0.5 * centre @ squared @ centre)
-    points = vectors[:, -2:] * np.sqrt(np.maximum(values[-2:], 0.0))
-    found = {names[k]: points[n] for n, k in enumerate(inside)}
-    shared = [v for v in anchors if v in found]
-    if len(shared) < 3:
-        return {}
-    move = align(np.array([found[v] for v in shared]), np.array([anchors[v] for v in shared]), True)
-    return {v: move(p) for v, p in found.items()}
+class Baselines:
+    """Classical MDS-MAP, and plain least squares of all ranges from where that ends."""
+
+    def __init__(self, folder, anchors):
+        rows = read_rows(folder / "ranges.csv")
+        self.names = sorted({row[end] for row in rows for end in ("from", "to")} | set(anchors),
+                            key=int)
+        place = {name: k for k, name in enumerate(self.names)}
+        self.ends = np.array([[place[row["from"]], place[row["to"]]] for row in rows])
+        self.ranges = np.array([float(row["range"]) for row in rows])
+        self.sigmas = np.array([float(row["sigma"]) for row in rows])
+        self.fixed = np.array([place[v] for v in anchors])
+        self.anchors = np.array(list(anchors.values()))
+
+    def mds_map(self):
+        """Shortest paths, classical scaling, and the best similarity onto the anchors: the
+        largest part, and its positions."""
+        shape = (len(self.names),) * 2
+        graph = coo_matrix((self.ranges, self.ends.T), shape).tocsr()
+        _, labels = connected_components(graph, directed=False)
+        inside = np.flatnonzero(labels == np.bincount(labels).argmax())
+        squared = dijkstra(graph[inside][:, inside], directed=False)
+        np.square(squared, out=squared)
+        means = squared.mean(0)
+
+        def centred(x):  # the inner products, -1/2 J D J, without another matrix of n^2 numbers
+            x = x.ravel()
+            return -0.5 * (squared @ x - means * x.sum() - means @ x + means.mean() * x.sum())
+
+        n = len(inside)
+        products = LinearOperator((n, n), matvec=centred, dtype=float)
+        values, vectors = eigsh(products, k=2, which="LA", v0=np.linspace(-1.0, 2.0, n))
+        points = vectors * np.sqrt(np.maximum(values, 0.0))
+        known = np.isin(self.fixed, inside)
+        if known.sum() < 3:
+            return inside[:0], points[:0]
+        move = align(points[np.searchsorted(inside, self.fixed[known])], self.anchors[known], True)
+        return inside, move(points)
+
+    def least_squares(self, inside, points):
+        """All ranges of the part, by a trust region with sparse steps (lsmr)."""
+        place = np.full(len(self.names), -1)
+        place[inside] = np.arange(len(inside))
+        use = (place[self.ends] >= 0).all(1)
+        a, b = place[self.ends[use]].T
+        ranges, sigmas = self.ranges[use], self.sigmas[use]
+        known = np.isin(self.fixed, inside)
+        start = points.copy()
+        start[place[self.fixed[known]]] = self.anchors[known]
+        free = np.setdiff1d(np.arange(len(inside)), place[self.fixed[known]])
+        column = np.full(len(inside), -1)
+        column[free] = np.arange(len(free))
+
+        def arms(x):
+            positions = start.copy()
+            positions[free] = x.reshape(-1, 2)
+            arm = positions[a] - positions[b]
+            return arm, np.maximum(np.linalg.norm(arm, axis=1), 1e-12)
+
+        def residuals(x):
+            return (arms(x)[1] - ranges) / sigmas
+
+        def jacobian(x):
+            arm, length = arms(x)
+            slope = arm / (length * sigmas)[:, None]
+            rows = np.arange(len(ranges))
+            entries = [(sign * slope[moves, axis], rows[moves], 2 * column[end[moves]] + axis)
+                       for sign, end in ((1.0, a), (-1.0, b)) for moves in [column[end] >= 0]
+                       for axis in (0, 1)]
+            values, i, j = (np.concatenate(part) for part in zip(*entries))
+            return coo_matrix((values, (i, j)), (len(ranges), 2 * len(free))).tocsr()
+
+        found = least_squares(residuals, start[free].ravel(), jac=jacobian, tr_solver="lsmr",
+                              max_nfev=100)
+        result = start
+        result[free] = found.x.reshape(-1, 2)
+        return result
+
+    def named(self, inside, points):
+        return {self.names[v]: point for v, point in zip(inside, points)}
 
 
 def localize(folder, name, *options):
@@ -140,12 +198,6 @@ def measure(nodes, degree, noise, kind, share, seed):
         cell["rmsd"] = rmsd(ours, truth, free)
         radius = math.sqrt(degree / (math.pi * nodes))
         cell["far"] = sum(bool(np.linalg.norm(ours[v] - truth[v]) > 0.5 * radius) for v in free)
-        if nodes <= MDS_MAP_UP_TO:
-            scaled = mds_map(folder, truth, anchors)
-            cell["mds_map"] = rmsd(scaled, truth, [v for v in scaled if v not in anchors])
-        if nodes <= LEAST_SQUARES_UP_TO:
-            plain, _ = localize(folder, "plain", "--method", "least-squares")
-            cell["least_squares"] = rmsd(plain, truth, [v for v in plain if v not in anchors])
         if kind != "none":
             keep_true_ranges(folder)
             best, best_result = localize(folder, "best")
@@ -155,6 +207,20 @@ def measure(nodes, degree, noise, kind, share, seed):
             cell["common"] = rmsd(ours, truth, both)
             cell["true_only_common"] = rmsd(best, truth, both)
         return cell
+
+
+def measure_baselines(nodes, degree, noise, kind, share, seed):
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        simulate(folder, nodes, degree, noise, kind, share, seed)
+        truth, anchors = read_positions(folder / "truth.csv"), read_positions(folder / "anchors.csv")
+        baselines = Baselines(folder, anchors)
+        inside, scaled = baselines.mds_map()
+        fitted = baselines.least_squares(inside, scaled)
+        error = lambda points: rmsd(baselines.named(inside, points), truth,
+                                    [baselines.names[v] for v in inside
+                                     if baselines.names[v] not in anchors])
+        return {"mds_map": error(scaled), "least_squares": error(fitted)}
 
 
 class Store:
@@ -171,6 +237,10 @@ class Store:
 
 def key_of(*parts):
     return "/".join(map(str, parts))
+
+
+def baselines_key(*cell):
+    return key_of("baselines", *cell)
 
 
 def table(header, rows):
@@ -197,12 +267,17 @@ def simulated_section(store, nodes):
         cells = [cell for cell in cells if cell]
         if not cells:
             continue
+        baselines = [store.cells.get(baselines_key(nodes, degree, noise, kind, share, seed), {})
+                     for seed in SEEDS[nodes]]
         measured.append((degree, noise, kind, share))
         median = lambda field: median_of([c[field] for c in cells if field in c])
+        baseline = lambda field: median_of([c[field] for c in baselines if field in c])
         ratio = median_of([c["common"] / c["true_only_common"] for c in cells if "common" in c])
-        rows.append([degree, f"{noise:.0%}", "–" if kind == "none" else f"{share:.0%} {kind}",
-                     figure(median("rmsd")), figure(median("least_squares")),
-                     figure(median("mds_map")), figure(median("true_only")), figure(ratio, 2),
+        wrong = "–" if kind == "none" else f"{share:.0%} {kind}"
+        mark = " †" if any("earlier" in cell for cell in cells) else ""
+        rows.append([degree, f"{noise:.0%}", wrong + mark,
+                     figure(median("rmsd")), figure(baseline("least_squares")),
+                     figure(baseline("mds_map")), figure(median("true_only")), figure(ratio, 2),
                      f"{median('localised'):.0f}", figure(median("true_only_localised"), 0),
                      f"{median('far'):.0f}", figure(median("precision"), 3),
                      figure(median("recall"), 3), figure(median("seconds"), 1)])
@@ -428,22 +503,22 @@ Written by `benchmarks/networks.py`:
     $(scripts/python-env.sh) benchmarks/networks.py
 
 measured piece by piece (`--sizes`, `--budget`) in the -O2 build of the preset `dev`, on two
-cores that had two to three times as much to do otherwise: seconds are wall-clock and say
-little. RMSD counts the nodes that a method places, anchors left out, in sides of the unit
-square. Sizes, rows and cells that are missing were not measured.
+cores that had other work to do: seconds are wall-clock and say little. RMSD counts the nodes that
+a method places, anchors left out, in sides of the unit square. Sizes, rows and cells that are
+missing were not measured; rows marked † were measured with an earlier version, before mirror
+images of parts were tried.
 
 ## Simulated networks
 
-10 anchors. *Least squares* fits all ranges from the same kind of start; *MDS-MAP* is
-shortest paths, classical scaling and a similarity onto the anchors. *Ours, true ranges
-only* is `isotherm localize` given only the correct ranges of the same network; *ratio*
-compares it with ours on the nodes that both localise. Precision and recall are those
-of the verdicts on ranges. *Localised* leaves out nodes that, or whose surroundings, fit
+10 anchors. *MDS-MAP* is shortest paths, classical scaling and a similarity onto the anchors;
+*least squares* fits all ranges from where that ends; both place all nodes that are connected.
+*Ours, true ranges only* is `isotherm localize` given only the correct ranges of the same network;
+*ratio* compares it with ours on the nodes that both localise. Precision and recall are those of
+the verdicts on ranges. *Localised* leaves out nodes that, or whose surroundings, fit
 nearly as well elsewhere; *far off* are those of the localised that are more than half a
 radius from the truth. A ratio says nothing of nodes that only one of the two localises. With
 biased ranges the true ones alone can localise fewer nodes: where a fifth of the ranges is
 missing, absence proves less, while a range that is too long is still a range.
-The networks of 1,000 nodes have one seed.
 
 """
 
@@ -483,6 +558,7 @@ def main():
                 break
             cell = (nodes, degree, noise, kind, share, seed)
             store.get(key_of(*cell), lambda: measure(*cell))
+            store.get(baselines_key(*cell), lambda: measure_baselines(*cell))
     sections = [simulated_section(store, nodes) for nodes in (100, 1000, 10000)]
     sections.append(exceptions_section(store))
     PAGE.write_text(INTRODUCTION + "\n".join(filter(None, sections)) + "\n" + REAL
