@@ -13,7 +13,8 @@ namespace isotherm::slam::detail {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-constexpr double kMargin = 5.0;         // over what short cycles say of odometry
+constexpr double kMargin = 3.0;         // over what short cycles say of odometry
+constexpr double kDriftMargin = 10.0;   // the same, with room for drift
 constexpr double kLeeway = 5.0;         // above that, where they find it better than stated
 constexpr double kSame = 1e-9;          // of two measurements
 constexpr double kLargestChange = 2.0;  // of a factor, in one step
@@ -88,7 +89,22 @@ void Calibration<Pose>::double_odometry() {
 
 template <class Pose>
 double Calibration<Pose>::least_odometry(const std::vector<double>& chi2) const {
-  return std::min(1.0, kMargin * cycle_scale(chi2, Pose::kDof));
+  return std::min(1.0, margin() * cycle_scale(chi2, Pose::kDof));
+}
+
+template <class Pose>
+double Calibration<Pose>::margin() const {
+  return drift_allowed_ ? kDriftMargin : kMargin;
+}
+
+template <class Pose>
+bool Calibration<Pose>::allow_for_drift() {
+  if (least_odometry_ >= 1.0) return false;
+  const double before = margin();
+  drift_allowed_ = true;
+  least_odometry_ = std::min(1.0, least_odometry_ * margin() / before);
+  scale_.odometry = std::max(scale_.odometry, least_odometry_);
+  return true;
 }
 
 template class Calibration<Pose2>;

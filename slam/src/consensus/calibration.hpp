@@ -12,9 +12,9 @@ namespace isotherm::slam::detail {
 /// What the data say about the covariances that the file states.
 ///
 /// Odometry's may be widened, or tightened as far as short cycles of loops and odometry
-/// vouch for; those see no slow drift, so that a margin is left. Loops' are tightened only
-/// as far as the tail of the accepted ones lets the correct ones stay: real errors have
-/// heavy tails.
+/// vouch for. Those see no slow drift: room is left for it, most of it only once the
+/// loops that do without have been accepted. Loops' are tightened only as far as the tail
+/// of the accepted ones lets the correct ones stay: real errors have heavy tails.
 template <class Pose>
 class Calibration {
  public:
@@ -47,9 +47,15 @@ class Calibration {
   bool learn_from_accepted(const Estimate<Pose>& estimate, const std::vector<bool>& accepted,
                            const std::vector<double>& probability, double tail_share);
 
+  /// Doubles odometry's covariance, as far as short cycles permit.
   void double_odometry();
 
+  /// Leaves more room for drift from here on. False if that changes nothing, odometry
+  /// being as accurate as stated or less.
+  bool allow_for_drift();
+
  private:
+  double margin() const;
   double most_odometry() const;
   double least_odometry(const std::vector<double>& chi2) const;
 
@@ -57,6 +63,7 @@ class Calibration {
   const Pairs& pairs_;
   std::vector<double> cycle_chi2_;  // one a pair, at the covariances of the file
   CovarianceScale scale_;           // variance components; of loops at least 1
+  bool drift_allowed_ = false;
   double least_odometry_ = 1.0;
   double loop_level_ = 1.0;
   double tightened_ = 1.0;  // loops' covariances on top of that; at most 1

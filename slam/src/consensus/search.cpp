@@ -49,6 +49,12 @@ void Search<Pose>::run(ConsensusResult& result) {
   // The scales are learnt from proven loops first: those that are merely likely are
   // the likelier, the wider the covariances, and would feed back.
   accept_and_calibrate(kCalibrations);
+  // Loops that fit a sharp prediction first, then those that need room for drift: wide ones
+  // let false loops between near poses in before the true ones that contradict them.
+  if (options_.calibrate && calibration_.allow_for_drift()) {
+    judge_anew();
+    accept_and_calibrate(kCalibrations);
+  }
   take_likely_ = true;
   accept_and_calibrate(kLastCalibrations);
   for (int k = 0; k < kReconsiderations && reconsider();) ++k;
