@@ -37,6 +37,7 @@ class Firmness {
         evidence_(learn_evidence(problem, trusted, gate, placement)),
         crowd_(problem, placement, evidence_.absence),
         clear_(-2.0 * std::log(options.mirror_chance)),
+        sigma_(lower_median(problem.sigmas)),
         strict_{std::min(evidence_.limits.apart, kOneRange * clear_),
                 std::min(evidence_.limits.close, kOneRange * clear_)} {}
 
@@ -162,14 +163,16 @@ class Firmness {
     TiedBody tied;
     auto& ties = tied.ties;
     std::vector<Index> outside;
-    const double sigma = lower_median(problem_.sigmas);
     const int d = problem_.dimension;
     for (const Index v : body) {
       if (firm.placed[v]) {
         // The place of an anchor cannot be at fault, only the ranges that tie it to the body.
         const double limit = (problem_.is_anchor[v] ? d + 1 : 1) * evidence_.limits.apart;
-        ties.push_back(
-            {placement_.positions.col(v), placement_.positions.col(v), 0.0, sigma, {limit, limit}});
+        ties.push_back({placement_.positions.col(v),
+                        placement_.positions.col(v),
+                        0.0,
+                        sigma_,
+                        {limit, limit}});
         continue;
       }
       outside.push_back(v);
@@ -287,6 +290,7 @@ class Firmness {
   Evidence evidence_;
   Crowd crowd_;
   double clear_;
+  double sigma_;   // of a usual range
   Limits strict_;  // with which no single range decides
 };
 
