@@ -46,6 +46,7 @@ Json to_json(const ConsensusResult& result, const spectral::EdgeVerdicts& verdic
   Json json = {{"inlier_fraction", result.inlier_fraction},
                {"odometry_scale", result.odometry_scale},
                {"loop_scale", result.loop_scale},
+               {"tail_factor", result.tail_factor},
                {"settled", result.settled},
                {"rounds", Json::array()},
                {"loops", Json::array()}};

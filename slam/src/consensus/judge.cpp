@@ -11,7 +11,7 @@ namespace {
 
 // However heavy the tails of real errors, an accepted loop is dropped beyond twice the
 // deviations that an average one would need to meet the gate.
-constexpr double kMostDropFactor = 4.0;
+constexpr double kMostTailFactor = 4.0;
 
 }  // namespace
 
@@ -26,12 +26,17 @@ Judge<Pose>::Judge(const ReducedGraph<Pose>& graph, const Estimate<Pose>& estima
       accepted_(accepted),
       significance_(significance),
       gate_(chi_squared_quantile(1.0 - significance, Pose::kDof)),
-      tail_{gate_, kMostDropFactor},
+      tail_{gate_, kMostTailFactor},
       standings_(graph.loops.size()) {}
 
 template <class Pose>
+double Judge<Pose>::tail_factor() const {
+  return std::min(tail_.factor, kMostTailFactor);
+}
+
+template <class Pose>
 double Judge<Pose>::drop_gate() const {
-  return gate_ * std::max(1.0, std::min(tail_.factor, kMostDropFactor) * calibration_.loop_level());
+  return gate_ * std::max(1.0, tail_factor() * calibration_.loop_level());
 }
 
 template <class Pose>
@@ -126,7 +131,7 @@ void Judge<Pose>::learn_tail() {
   for (std::size_t k = 0; k < standings_.size(); ++k) {
     if (accepted_[k]) chi2.push_back(standings_[k].evidence.chi2);
   }
-  tail_ = chi2.empty() ? Tail{gate_, kMostDropFactor}
+  tail_ = chi2.empty() ? Tail{gate_, kMostTailFactor}
                        : student_tail(std::move(chi2), Pose::kDof, significance_);
 }
 

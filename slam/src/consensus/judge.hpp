@@ -38,6 +38,9 @@ class Judge {
 
   double gate() const noexcept { return gate_; }
 
+  /// How many times farther out than for Gaussian errors the accepted loops may lie.
+  double tail_factor() const;
+
   /// The gate of accepted loops: real errors have heavy tails, and where a loop was
   /// accepted it had evidence of its own.
   double drop_gate() const;

@@ -268,6 +268,7 @@ void Search<Pose>::report(ConsensusResult& result) const {
   result.inlier_fraction = judge_.inlier_fraction();
   result.odometry_scale = calibration_.scale().odometry;
   result.loop_scale = calibration_.scale().loops;
+  result.tail_factor = judge_.tail_factor();
   result.settled = settled_;
   result.details.resize(accepted_.size());
   std::vector<bool> pruned(accepted_.size(), false);

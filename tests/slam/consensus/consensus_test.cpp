@@ -37,6 +37,7 @@ TYPED_TEST(ConsensusOf, KeepsACleanGraphAsItIs) {
   EXPECT_TRUE(result.settled);
   EXPECT_LT(result.odometry_scale, 1.5);
   EXPECT_LT(result.loop_scale, 1.5);
+  EXPECT_EQ(result.tail_factor, 4.0) << "forty loops do not show that tails are light";
 }
 
 TYPED_TEST(ConsensusOf, FindsFalseLoops) {
@@ -183,6 +184,7 @@ TEST(Consensus, LearnsThatAFileIsUnderconfident) {
   EXPECT_LT(result.odometry_scale, 0.1);
   EXPECT_LT(result.loop_scale, 0.1);
   EXPECT_GE(result.loop_scale, 1e-3) << "loops are tightened no further than they deserve";
+  EXPECT_LT(result.tail_factor, 4.0) << "errors are Gaussian";
   EXPECT_GE(metrics.precision(), 0.99);
   EXPECT_GE(metrics.recall(), 0.99);
 }

@@ -73,6 +73,9 @@ struct ConsensusResult {
   double inlier_fraction = 0.5;  ///< of the loops that were decided, as learnt
   double odometry_scale = 1.0;   ///< factor on the covariances of odometry
   double loop_scale = 1.0;       ///< factor on the covariances of loops
+  /// How many times farther out than for Gaussian errors accepted loops may lie by the
+  /// tail of their chi-squared, 1 to 4; 4 where too few were accepted to tell.
+  double tail_factor = 4.0;
   bool settled = true;           ///< false: max_rounds ended the search
 };
 
