@@ -13,7 +13,7 @@ namespace isotherm::slam::detail {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-constexpr double kMargin = 3.0;         // over what short cycles say of odometry
+constexpr double kMargin = 5.0;         // over what short cycles say of odometry
 constexpr double kDriftMargin = 10.0;   // the same, with room for drift
 constexpr double kLeeway = 5.0;         // above that, where they find it better than stated
 constexpr double kSame = 1e-9;          // of two measurements
