@@ -75,6 +75,25 @@ TEST(Calibration, GroupsThatRepeatOneMeasurementSayNothingOfAccuracy) {
   EXPECT_EQ(calibration.scale().odometry, 1.0);
 }
 
+TEST(Calibration, LeavesRoomForDriftOnlyWhereOdometryIsBetterThanStated) {
+  for (const double understated : {1.0, 1e-3}) {
+    auto city = simulate_city({.poses = 800, .measurements = {.loops = 300}, .seed = 3});
+    for (auto& constraint : city.graph.constraints) constraint.information *= understated;
+    const auto graph = reduce(city.graph, edge_roles(city.graph));
+    const auto pairs = near_pairs(graph, ConsensusOptions().window);
+    Calibration<Pose2> calibration(graph, pairs);
+    calibration.learn_from_cycles(MapVolume<Pose2>(graph.poses));
+    const double sharp = calibration.scale().odometry;
+    const bool better = understated < 1.0;
+    EXPECT_EQ(calibration.allow_for_drift(), better);
+    EXPECT_NEAR(calibration.scale().odometry, better ? 2.0 * sharp : 1.0, 1e-12);
+
+    for (int k = 0; k < 10; ++k) calibration.double_odometry();
+    const double widest = calibration.scale().odometry;
+    EXPECT_NEAR(widest, better ? 10.0 * sharp : 1024.0, 1e-9) << "no accepted loop may widen more";
+  }
+}
+
 TEST(PriorBySpan, IsEvenBeforeAnythingIsDecided) {
   const PriorBySpan prior;
   EXPECT_DOUBLE_EQ(prior.fraction(), 0.5);
