@@ -502,10 +502,10 @@ Written by `benchmarks/networks.py`:
     scripts/build.sh release
     $(scripts/python-env.sh) benchmarks/networks.py
 
-measured piece by piece (`--sizes`, `--budget`) in the -O2 build of the preset `dev`, on two
+measured piece by piece (`--sizes`, `--budget`) in builds of the presets `dev` and `release`, on two
 cores that had other work to do: seconds are wall-clock and say little. RMSD counts the nodes that
 a method places, anchors left out, in sides of the unit square. Sizes, rows and cells that are
-missing were not measured; rows marked † were measured with an earlier version, before mirror
+missing were not measured; rows marked † were measured in part with an earlier version, before mirror
 images of parts were tried.
 
 ## Simulated networks
