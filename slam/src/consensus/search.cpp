@@ -259,7 +259,7 @@ template <class Pose>
 void Search<Pose>::judge_anew() {
   for (auto& record : records_) record.drops = 0;
   judge_.forget_bounds();
-  support_ = mutual_support(graph_, near_pairs_, map_, calibration_.shown(), judge_.gate());
+  support_ = mutual_support(graph_, near_pairs_, map_, calibration_.scale(), judge_.gate());
 }
 
 template <class Pose>
