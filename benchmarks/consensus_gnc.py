@@ -3,8 +3,9 @@
 Half of the loops of each graph are false (vertigo, random, seed 1). GNC starts at the
 poses of odometry with a truncated least-squares loss, odometry and the first pose being
 known inliers, and everything else as GTSAM has it. On the large graphs it is stopped at
-ten times what consensus takes. Reading files does not count for GTSAM; for Isotherm the whole command
-on one thread does. Cubicle is left out: its odometry is in pieces, and gives no start.
+ten times what consensus takes. Reading files does not count for GTSAM; for Isotherm the
+whole command on one thread does. Cubicle is left out: its odometry is in pieces, and
+gives no start.
 
 usage: consensus_gnc.py ISOTHERM DATA_FOLDER
 """

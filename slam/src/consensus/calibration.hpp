@@ -26,12 +26,6 @@ class Calibration {
   /// The factors on what the file states.
   CovarianceScale scale() const { return {scale_.odometry, scale_.loops * tightened_}; }
 
-  /// The same, but loops as accurate as short cycles show, which go through them as well:
-  /// most are, if not the worst.
-  CovarianceScale shown() const {
-    return {scale_.odometry, scale_.loops * std::min(tightened_, least_odometry_)};
-  }
-
   /// Mean chi-squared a degree of freedom of the accepted loops where their covariances
   /// are only widened, as last learnt; 1 before. Below 1 where the file understates how
   /// accurate they are.
@@ -55,6 +49,12 @@ class Calibration {
   bool allow_for_drift();
 
  private:
+  // The scale, but with loops as accurate as short cycles show, which go through them as
+  // well: most are, if not the worst.
+  CovarianceScale shown() const {
+    return {scale_.odometry, scale_.loops * std::min(tightened_, least_odometry_)};
+  }
+
   double margin() const;
   double most_odometry() const;
   double least_odometry(const std::vector<double>& chi2) const;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 #include "isotherm/base/statistics.hpp"
 
@@ -19,13 +18,6 @@ constexpr double kCauchy = 1.0;      // degrees of freedom of Student's distribu
 constexpr double kGaussian = 200.0;  // and as good as infinitely many
 constexpr int kHalvings = 40;
 constexpr double kRounding = 1e-8;  // chi-squared of data without errors
-
-double quantile(std::vector<double>& values, double probability) {
-  const auto at = values.begin() +
-                  static_cast<std::ptrdiff_t>(probability * static_cast<double>(values.size()));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 double over_median(double probability, int dof, double nu) {
   return f_quantile(probability, dof, nu) / f_quantile(kMiddle, dof, nu);
@@ -45,7 +37,7 @@ double degrees_of_freedom(double ratio, int dof) {
 
 }  // namespace
 
-Tail student_tail(std::vector<double> chi2, int dof, double probability) {
+Tail student_tail(const std::vector<double>& chi2, int dof, double probability) {
   const double middle = std::max(quantile(chi2, kMiddle), kRounding);
   const double upper = std::max(quantile(chi2, kUpper), middle);
   const double error = kDeviations * kDeviationOfOne / std::sqrt(static_cast<double>(chi2.size()));

@@ -16,6 +16,6 @@ struct Tail {
 /// degrees of freedom, times a factor. nu is found from the ratio of the 90 % quantile
 /// and the median, which few false loops hardly change. A few values could have it by
 /// chance where tails are heavier: it is taken two deviations larger.
-Tail student_tail(std::vector<double> chi2, int dof, double probability);
+Tail student_tail(const std::vector<double>& chi2, int dof, double probability);
 
 }  // namespace isotherm::slam::detail

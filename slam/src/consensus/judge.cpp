@@ -1,7 +1,6 @@
 #include "judge.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "isotherm/base/statistics.hpp"
 #include "prediction.hpp"
@@ -131,8 +130,8 @@ void Judge<Pose>::learn_tail() {
   for (std::size_t k = 0; k < standings_.size(); ++k) {
     if (accepted_[k]) chi2.push_back(standings_[k].evidence.chi2);
   }
-  tail_ = chi2.empty() ? Tail{gate_, kMostTailFactor}
-                       : student_tail(std::move(chi2), Pose::kDof, significance_);
+  tail_ =
+      chi2.empty() ? Tail{gate_, kMostTailFactor} : student_tail(chi2, Pose::kDof, significance_);
 }
 
 template <class Pose>

@@ -33,6 +33,14 @@ double median(std::vector<double> values) {
   return 0.5 * (*upper + *std::max_element(values.begin(), upper));
 }
 
+double quantile(std::vector<double> values, double share) {
+  require_probability(share);
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
 double chi_squared_quantile(double probability, int dof) {
   require_probability(probability);
   return boost::math::quantile(distribution(dof), probability);

@@ -38,6 +38,14 @@ TEST(ChiSquared, EndsAndBadArguments) {
   EXPECT_THROW(chi_squared_upper_tail(std::nan(""), 3), InvalidArgument);
 }
 
+TEST(Quantile, IsTheOneWithThisShareBeforeIt) {
+  EXPECT_EQ(quantile({7.0}, 0.9), 7.0);
+  EXPECT_EQ(quantile({5.0, 1.0, 4.0, 2.0, 3.0}, 0.0), 1.0);
+  EXPECT_EQ(quantile({5.0, 1.0, 4.0, 2.0, 3.0}, 0.5), 3.0);
+  EXPECT_EQ(quantile({5.0, 1.0, 4.0, 2.0, 3.0}, 0.9), 5.0);
+  EXPECT_THROW(quantile({1.0}, 1.0), InvalidArgument);
+}
+
 TEST(FisherF, PublishedQuantile) { EXPECT_NEAR(f_quantile(0.95, 3, 10), 3.708265, 1e-6); }
 
 TEST(FisherF, IsChiSquaredOverItsDegreesWhereTheOtherHasMany) {

@@ -7,6 +7,10 @@ namespace isotherm {
 /// The middle one, or the mean of the middle two; `values` is not empty. O(n).
 double median(std::vector<double> values);
 
+/// The one with this share, 0 <= share < 1, of all `values` before it in ascending order,
+/// rounded down; `values` is not empty. O(n). @throws InvalidArgument for another share
+double quantile(std::vector<double> values, double share);
+
 /// The value that a chi-squared variable with `dof` degrees of freedom stays
 /// below with the given probability, 0 <= probability < 1.
 /// @throws InvalidArgument outside these ranges or for dof < 1.
