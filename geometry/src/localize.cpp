@@ -129,6 +129,7 @@ class Localization {
       }
       changed = changed || std::abs(std::log(factor)) > 0.05;
     }
+    problem_.typical_sigma = detail::lower_median(problem_.sigmas);
     return changed;
   }
 

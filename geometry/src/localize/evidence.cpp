@@ -21,7 +21,7 @@ class Tally {
     constexpr double kLeast = 4.0;
     constexpr double kPeak = 0.3989;  // of the standard normal density
     // A wrong range has any length up to about twice the usual one.
-    const double span = 2.0 * problem.typical_distance / lower_median(problem.sigmas);
+    const double span = 2.0 * problem.typical_distance / problem.typical_sigma;
     const auto limit = [&](double wrong) {
       return std::max(kLeast, 2.0 * std::log(fitting_ / wrong * kPeak * span));
     };

@@ -37,7 +37,7 @@ class Firmness {
         evidence_(learn_evidence(problem, trusted, gate, placement)),
         crowd_(problem, placement, evidence_.absence),
         clear_(-2.0 * std::log(options.mirror_chance)),
-        sigma_(lower_median(problem.sigmas)),
+        sigma_(problem.typical_sigma),
         strict_{std::min(evidence_.limits.apart, kOneRange * clear_),
                 std::min(evidence_.limits.close, kOneRange * clear_)} {}
 
@@ -119,19 +119,23 @@ class Firmness {
 
   // Takes out what is elsewhere in a mirror image of a part that fits nearly as well.
   void release_folding_parts(Placement& firm) const {
-    for (bool any = true; any;) {
-      any = false;
+    std::vector<bool> among(problem_.nodes, true);
+    Nodes released;
+    do {
+      released.clear();
       const Crowd crowd(problem_, firm, evidence_.absence);
-      for (const auto& fold : find_folds(problem_, trusted_, evidence_.limits, options_, firm)) {
+      for (const auto& fold :
+           find_folds(problem_, trusted_, evidence_.limits, options_, firm, among)) {
         const bool is_whole = std::all_of(fold.part.begin(), fold.part.end(),
                                           [&](Index v) { return firm.placed[v]; });
         if (!is_whole) continue;
         const auto outcome = try_fold(problem_, trusted_, gate_, evidence_, crowd, firm, fold);
         if (outcome.extra >= clear_) continue;
         for (const Index v : outcome.moved) firm.placed[v] = false;
-        any = any || !outcome.moved.empty();
+        released.insert(released.end(), outcome.moved.begin(), outcome.moved.end());
       }
-    }
+      among = lines_near(problem_, released);
+    } while (!released.empty());
   }
 
   // Adds to one body those of `others` that are fixed to it, and what they bring, as long

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <set>
+#include <span>
 #include <unordered_map>
 #include <utility>
 
@@ -19,16 +21,78 @@ constexpr double kMostBroken = 10.0;
 // What breaks a pair, of the limit of a range that does not fit.
 constexpr double kBroken = 0.5;
 
+// A trusted pair of placed nodes, as one of them sees it.
+struct Tie {
+  Index vertex = 0;  // the other
+  double distance = 0.0;
+  double sigma = 1.0;
+  double squared = 0.0;  // distance of their places
+  double cost = 0.0;     // as things stand
+  // Squared distances beyond which the tie is broken.
+  double least = 0.0;
+  double most = 0.0;
+};
+
+// The ties of all nodes, side by side: a search goes over them again and again.
+class Ties {
+ public:
+  Ties(const RangeProblem& problem, const std::vector<bool>& trusted, const Limits& limits,
+       const Placement& placement)
+      : limits_(limits) {
+    for (Index v = 0; v < problem.nodes; ++v) {
+      places_.emplace_back(placement.positions.col(v));
+      first_.push_back(ties_.size());
+      if (!placement.placed[v]) continue;
+      for (const auto& [vertex, edge] : problem.pair_graph.neighbours(v)) {
+        if (!trusted[edge] || !placement.placed[vertex]) continue;
+        const auto& pair = problem.pairs[edge];
+        const Eigen::Vector2d arm = placement.positions.col(v) - placement.positions.col(vertex);
+        Tie tie{vertex, pair.distance, pair.sigma, arm.squaredNorm()};
+        tie.cost = cost_of(tie, std::sqrt(tie.squared));
+        limit(tie);
+        ties_.push_back(tie);
+      }
+    }
+    first_.push_back(ties_.size());
+  }
+
+  std::span<const Tie> of(Index node) const {
+    return std::span(ties_).subspan(first_[node], first_[node + 1] - first_[node]);
+  }
+
+  const Eigen::Vector2d& place(Index node) const { return places_[node]; }
+
+  // What it costs that the ends of a tie are this far from each other.
+  double cost_of(const Tie& tie, double length) const {
+    const double r = (length - tie.distance) / tie.sigma;
+    return std::min(r * r, limits_(r));
+  }
+
+ private:
+  // A broken one costs more than before by half of what a range that does not fit does.
+  void limit(Tie& tie) const {
+    const double broken = tie.cost + kBroken * limits_.least();
+    const double apart = tie.distance + tie.sigma * std::sqrt(broken);
+    const double close = tie.distance - tie.sigma * std::sqrt(broken);
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    tie.most = broken < limits_.apart ? apart * apart : kNever;
+    tie.least = broken < limits_.close && close > 0.0 ? close * close : -kNever;
+  }
+
+  const Limits& limits_;
+  std::vector<Eigen::Vector2d> places_;
+  std::vector<std::size_t> first_;  // node -> its first tie
+  std::vector<Tie> ties_;
+};
+
 // The folds in lines through one node after the other.
 class Search {
  public:
-  Search(const RangeProblem& problem, const std::vector<bool>& trusted, const Limits& limits,
+  Search(const RangeProblem& problem, const Ties& ties, const Limits& limits,
          const Placement& placement)
       : problem_(problem),
-        trusted_(trusted),
+        ties_(ties),
         limits_(limits),
-        placement_(placement),
-        breaking_(kBroken * limits.least()),
         // Without anchors a part is what turns beside the rest, which is larger.
         most_(problem.anchored() ? kMost : std::min(kMost, placed_count(placement) / 2)),
         known_(problem.nodes, 0),
@@ -36,26 +100,27 @@ class Search {
         strings_(problem.nodes, {0, 0}) {}
 
   void add_folds_through(Index node, std::vector<Fold>& found) {
-    for (const auto& [vertex, edge] : problem_.pair_graph.neighbours(node)) {
-      if (vertex < node || !trusted_[edge] || !placement_.placed[vertex]) continue;
-      through_ = placement_.positions.col(node);
-      const Eigen::Vector2d along = placement_.positions.col(vertex) - through_;
-      if (!(along.norm() > 0.0)) continue;
+    for (const auto& tie : ties_.of(node)) {
+      if (tie.vertex < node || !(tie.squared > 0.0)) continue;
+      through_ = ties_.place(node);
+      const Eigen::Vector2d along = ties_.place(tie.vertex) - through_;
       normal_ = Eigen::Vector2d(-along.y(), along.x()).normalized();
       ++axis_number_;
-      for (const Index end : {node, vertex}) add_folds_beside(end, found);
+      for (const Index end : {node, tie.vertex}) add_folds_beside(end, found);
     }
   }
 
  private:
   // Parts that begin next to a node of the axis.
   void add_folds_beside(Index end, std::vector<Fold>& found) {
-    for (const auto& [first, edge] : problem_.pair_graph.neighbours(end)) {
-      if (!trusted_[edge] || !can_turn(first) || is_known(first)) continue;
-      for (const auto& [second, other] : problem_.pair_graph.neighbours(first)) {
-        if (!can_turn(second) || is_known(second) || !(extra(first, second, other) > breaking_)) {
-          continue;
-        }
+    for (const auto& to_first : ties_.of(end)) {
+      const Index first = to_first.vertex;
+      if (!can_turn(first) || is_known(first)) continue;
+      const double height_of_first = height(first);
+      for (const auto& to_second : ties_.of(first)) {
+        const Index second = to_second.vertex;
+        if (!can_turn(second) || is_known(second)) continue;
+        if (!breaks(to_second, height_of_first)) continue;
         std::vector<Index> part = {first, second};
         const bool whole = grow(part);
         if (part.size() < kLeast) {  // joined by a false range, perhaps
@@ -68,7 +133,7 @@ class Search {
     }
   }
 
-  bool can_turn(Index node) const { return placement_.placed[node] && !problem_.is_anchor[node]; }
+  bool can_turn(Index node) const { return !problem_.is_anchor[node]; }
 
   bool is_known(Index node) const { return known_[node] == axis_number_; }
 
@@ -83,16 +148,16 @@ class Search {
     ++part_number_;
     for (const Index v : part) add(v);
     for (std::size_t k = 0; k < part.size(); ++k) {
-      for (const auto& [vertex, edge] : problem_.pair_graph.neighbours(part[k])) {
-        if (!placement_.placed[vertex] || part_of_[vertex] == part_number_) continue;
-        if (!(extra(part[k], vertex, edge) > breaking_)) continue;
-        auto& [number, count] = strings_[vertex];
+      const double height_of_turned = height(part[k]);
+      for (const auto& tie : ties_.of(part[k])) {
+        if (part_of_[tie.vertex] == part_number_ || !breaks(tie, height_of_turned)) continue;
+        auto& [number, count] = strings_[tie.vertex];
         if (number != part_number_) count = 0;
         number = part_number_;
         if (++count < 2) continue;
-        if (problem_.is_anchor[vertex] || is_known(vertex)) return false;
-        add(vertex);
-        part.push_back(vertex);
+        if (problem_.is_anchor[tie.vertex] || is_known(tie.vertex)) return false;
+        add(tie.vertex);
+        part.push_back(tie.vertex);
         if (static_cast<Index>(part.size()) > most_) return false;
       }
     }
@@ -106,41 +171,34 @@ class Search {
     found.push_back({std::move(part), through_, normal_, cost});
   }
 
+  // All nodes of the part that was grown last.
   double cost_of(const std::vector<Index>& part) const {
     double cost = 0.0;
     for (const Index v : part) {
-      for (const auto& [vertex, edge] : problem_.pair_graph.neighbours(v)) {
-        if (!placement_.placed[vertex]) continue;
-        if (std::binary_search(part.begin(), part.end(), vertex)) continue;
-        cost += extra(v, vertex, edge);
+      for (const auto& tie : ties_.of(v)) {
+        if (part_of_[tie.vertex] == part_number_) continue;
+        cost += ties_.cost_of(tie, std::sqrt(mirrored(tie, height(v)))) - tie.cost;
       }
     }
     return cost;
   }
 
-  // By how much a pair fits worse if one of its ends is mirrored and the other is not.
-  double extra(Index turned, Index other, Index edge) const {
-    if (!trusted_[edge]) return 0.0;
-    const auto& pair = problem_.pairs[edge];
-    const Eigen::Vector2d arm = placement_.positions.col(turned) - placement_.positions.col(other);
-    const double squared = arm.squaredNorm();
-    const double mirrored = std::max(0.0, squared + 4.0 * height(turned) * height(other));
-    return cost_of(pair, std::sqrt(mirrored)) - cost_of(pair, std::sqrt(squared));
+  // Squared distance of the ends of a tie if the one at a height is mirrored, the other not.
+  double mirrored(const Tie& tie, double turned) const {
+    return std::max(0.0, tie.squared + 4.0 * turned * height(tie.vertex));
+  }
+
+  bool breaks(const Tie& tie, double turned) const {
+    const double squared = mirrored(tie, turned);
+    return squared > tie.most || squared < tie.least;
   }
 
   // Above the axis.
-  double height(Index node) const { return normal_.dot(placement_.positions.col(node) - through_); }
-
-  double cost_of(const RangePair& pair, double length) const {
-    const double r = (length - pair.distance) / pair.sigma;
-    return std::min(r * r, limits_(r));
-  }
+  double height(Index node) const { return normal_.dot(ties_.place(node) - through_); }
 
   const RangeProblem& problem_;
-  const std::vector<bool>& trusted_;
+  const Ties& ties_;
   const Limits& limits_;
-  const Placement& placement_;
-  double breaking_;          // what a fold must cost a pair to break it
   Index most_;               // nodes of a part
   Eigen::Vector2d through_;  // the axis
   Eigen::Vector2d normal_;
@@ -191,16 +249,17 @@ Point Fold::mirrored(const Point& point) const {
 
 std::vector<Fold> find_folds(const RangeProblem& problem, const std::vector<bool>& trusted,
                              const Limits& limits, const LocalizeOptions& options,
-                             const Placement& placement) {
+                             const Placement& placement, const std::vector<bool>& among) {
   constexpr Index kBlock = 64;  // nodes that share the memory of a search
   if (problem.dimension != 2) return {};
   const Index blocks = (problem.nodes + kBlock - 1) / kBlock;
+  const Ties ties(problem, trusted, limits, placement);
   std::vector<std::vector<Fold>> found(blocks);
   parallel_for(blocks, options.threads, options.progress, "folds", [&](std::int64_t block) {
-    Search search(problem, trusted, limits, placement);
+    Search search(problem, ties, limits, placement);
     const auto first = static_cast<Index>(block) * kBlock;
     for (Index v = first; v < std::min(problem.nodes, first + kBlock); ++v) {
-      if (placement.placed[v]) search.add_folds_through(v, found[block]);
+      if (among[v]) search.add_folds_through(v, found[block]);
     }
   });
   std::vector<Fold> folds;
@@ -208,6 +267,11 @@ std::vector<Fold> find_folds(const RangeProblem& problem, const std::vector<bool
   std::stable_sort(folds.begin(), folds.end(),
                    [](const Fold& a, const Fold& b) { return a.cost < b.cost; });
   return cheapest_of_alike(std::move(folds));
+}
+
+std::vector<bool> lines_near(const RangeProblem& problem, const std::vector<Index>& nodes) {
+  constexpr int kSteps = 4;  // about the extent of the largest parts
+  return within_steps(problem, nodes, kSteps);
 }
 
 }  // namespace isotherm::geometry::detail

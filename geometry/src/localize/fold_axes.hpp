@@ -23,10 +23,14 @@ struct Fold {
 /// stretch them little. A part is grown from two of its nodes over pairs that the fold would break
 /// and takes in nodes that two such pairs lead to, so that no single range, which may be
 /// false, joins what is on both sides of a hinge. Each part once, and of parts that are nearly the
-/// same five; the cheapest fold first. Empty in space. O(pairs * 200 * degree) at most, in
+/// same five; the cheapest fold first. Empty in space. Only lines that begin at a node in `among`
+/// count: those near what has changed since the last search. O(pairs * 200 * degree) at most, in
 /// parallel.
 std::vector<Fold> find_folds(const RangeProblem& problem, const std::vector<bool>& trusted,
                              const Limits& limits, const LocalizeOptions& options,
-                             const Placement& placement);
+                             const Placement& placement, const std::vector<bool>& among);
+
+/// The nodes near these, where lines are to be searched again when these have moved.
+std::vector<bool> lines_near(const RangeProblem& problem, const std::vector<Index>& nodes);
 
 }  // namespace isotherm::geometry::detail

@@ -36,7 +36,7 @@ class Trial {
     relax();
     FoldOutcome outcome;
     outcome.extra = cost() - before;
-    const double apart = 4.0 * lower_median(frame_.sigmas);
+    const double apart = 4.0 * frame_.typical_sigma;
     std::vector<Eigen::Index> which;
     for (std::size_t k = 0; k < nodes_.size(); ++k) {
       const auto column = static_cast<Eigen::Index>(k);
@@ -115,6 +115,7 @@ class Trial {
       pairs_.push_back(pair);
       frame_.sigmas.push_back(pair.sigma);
     }
+    frame_.typical_sigma = lower_median(frame_.sigmas);
   }
 
   void relax() {

@@ -20,7 +20,8 @@
 namespace isotherm::geometry::detail {
 namespace {
 
-constexpr double kFair = 0.5;  // of the nodes, that are firm in a map which is right as a whole
+constexpr double kFair = 0.5;   // of the nodes, that are firm in a map which is right as a whole
+constexpr double kGood = 0.95;  // and in one that needs no rival
 
 // How maps are started, and brought together.
 class Start {
@@ -125,16 +126,10 @@ class Start {
     return candidate;
   }
 
-  // Of a candidate and the one that some parts make, that of which more is explained.
-  Candidate better(Candidate best, std::vector<Placement> parts) const {
-    auto rival = opened(candidate(together(std::move(parts))));
-    return rival.credit > best.credit ? std::move(rival) : std::move(best);
-  }
-
-  // Places anew what is not firm, as long as more becomes so.
+  // Places anew what is not firm, as long as more becomes so, until most is.
   Candidate repair(Candidate best) const {
     constexpr int kMostRounds = 4;
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < kMostRounds && !is_firm(best, kGood); ++round) {
       auto again = candidate(best.firm);
       if (again.credit <= best.credit) break;
       best = opened(std::move(again));
@@ -142,12 +137,32 @@ class Start {
     return best;
   }
 
+  // From a placement of some nodes. Where most of them are wrong there is nothing to mend.
+  Candidate finished(Placement placement) const {
+    auto result = opened(candidate(std::move(placement)));
+    return is_firm(result, kFair) ? repair(std::move(result)) : result;
+  }
+
+  // Of a candidate and the one that some parts make, that of which more is explained. Parts that
+  // explain much less than a fair candidate does are not worth completing.
+  Candidate better(Candidate best, std::vector<Placement> parts) const {
+    constexpr double kWorth = 0.5;
+    auto map = together(std::move(parts));
+    if (is_firm(best, kFair) && credit(map) < kWorth * credit(best.all)) return best;
+    auto rival = finished(std::move(map));
+    return rival.credit > best.credit ? std::move(rival) : std::move(best);
+  }
+
  private:
   void examine(Candidate& candidate) const {
     candidate.firm = candidate.all;
     candidate.firm.placed = firm_nodes(problem_, trusted_, gate_, options_, candidate.all);
-    candidate.credit = agreement(problem_, trusted_, gate_, candidate.firm).credit -
-                       absence_cost(problem_, evidence_.absence, candidate.firm);
+    candidate.credit =
+        credit(candidate.firm) - absence_cost(problem_, evidence_.absence, candidate.firm);
+  }
+
+  double credit(const Placement& placement) const {
+    return agreement(problem_, trusted_, gate_, placement).credit;
   }
 
   const RangeProblem& problem_;
@@ -187,14 +202,12 @@ Placement place_initially(const RangeProblem& problem, const Placement& anchors,
     place_more(problem, gate, {{}, {gate, gate}}, stitched);
     return stitched;
   }
-  auto best = start.opened(start.candidate(std::move(stitched)));
-  // A start of which this part is firm needs no rival, or not the last one.
-  constexpr double kGood = 0.95;
-  if (!start.is_firm(best, kGood)) best = start.better(std::move(best), start.by_paths());
+  auto best = start.finished(std::move(stitched));
   if (!start.is_firm(best, kGood))
     best = start.better(std::move(best), start.stitched_and_unfolded());
+  if (!start.is_firm(best, kGood)) best = start.better(std::move(best), start.by_paths());
   if (!start.is_firm(best, kFair)) best = start.better(std::move(best), start.grown());
-  if (!start.is_firm(best, kGood)) best = start.repair(std::move(best));
+  if (!start.is_firm(best, kFair)) best = start.repair(std::move(best));
   return std::move(best.all);
 }
 

@@ -121,7 +121,7 @@ class Unfolding {
         errors_(errors),
         options_(options),
         placement_(placement),
-        sigma_(lower_median(problem.sigmas)) {}
+        sigma_(problem.typical_sigma) {}
 
   // From a loss that is wide beside the errors of the map down to that of a range.
   void run(double gate) {

@@ -116,6 +116,25 @@ double squared_deviation(const Placement& placement, const RangePair& pair) {
   return std::pow(deviation(placement, pair), 2);
 }
 
+std::vector<bool> within_steps(const RangeProblem& problem, const std::vector<Index>& nodes,
+                               int steps) {
+  std::vector<bool> result(problem.nodes, false);
+  for (const Index v : nodes) result[v] = true;
+  auto rim = nodes;
+  for (int step = 0; step < steps; ++step) {
+    std::vector<Index> next;
+    for (const Index v : rim) {
+      for (const auto& neighbour : problem.pair_graph.neighbours(v)) {
+        if (result[neighbour.vertex]) continue;
+        result[neighbour.vertex] = true;
+        next.push_back(neighbour.vertex);
+      }
+    }
+    rim = std::move(next);
+  }
+  return result;
+}
+
 bool has_range(const RangeProblem& problem, Index a, Index b) {
   const auto row = problem.pair_graph.neighbours(a);
   return std::any_of(row.begin(), row.end(), [b](const auto& entry) { return entry.vertex == b; });
@@ -141,6 +160,7 @@ RangeProblem make_problem(const RangeNetwork& network) {
     problem.sigmas.push_back(range.variance > 0.0 ? std::sqrt(range.variance)
                                                   : kProvisionalNoise * floor);
   }
+  problem.typical_sigma = lower_median(problem.sigmas);
   merge_pairs(problem);
   return problem;
 }
@@ -166,7 +186,7 @@ bool span_space(const RangeProblem& problem, const Placement& placement,
   constexpr double kFlat = 1e-9;  // of the nodes' extent: a line up to rounding
   if (static_cast<int>(nodes.size()) <= problem.dimension) return false;
   const Eigen::VectorXd values = extents(placement.positions(Eigen::all, nodes));
-  const double noise = problem.sigmas.empty() ? 0.0 : kClear * lower_median(problem.sigmas);
+  const double noise = problem.sigmas.empty() ? 0.0 : kClear * problem.typical_sigma;
   return values.minCoeff() > std::max(noise, kFlat * values.maxCoeff());
 }
 

@@ -26,6 +26,7 @@ struct RangeProblem {
   std::vector<bool> sigma_given;       ///< one a range
   std::vector<bool> is_anchor;         ///< one a node
   double typical_distance = 0.0;       ///< median of the ranges
+  double typical_sigma = 0.0;          ///< median of the standard deviations; NaN without ranges
   std::vector<RangePair> pairs;        ///< by order of first appearance
   spectral::WeightedGraph pair_graph;  ///< edge k is pair k, of weight 1
   std::vector<Index> pair_of;          ///< range -> pair
@@ -54,6 +55,10 @@ double deviation(const Placement& placement, const RangePair& pair);
 
 /// Its square.
 double squared_deviation(const Placement& placement, const RangePair& pair);
+
+/// Which nodes are at most so many ranges away from one of `nodes`.
+std::vector<bool> within_steps(const RangeProblem& problem, const std::vector<Index>& nodes,
+                               int steps);
 
 /// Whether there is a range between two nodes. O(degree).
 bool has_range(const RangeProblem& problem, Index a, Index b);

@@ -155,9 +155,8 @@ RefineOutcome refine(const RangeProblem& problem, const std::vector<bool>& use,
 
 RefineOutcome refine(const RangeProblem& problem, const std::vector<Spring>& springs,
                      Placement& placement, const RefineOptions& options) {
-  constexpr double kStillCost = 1e-8;  // relative decrease
   constexpr double kStillStep = 1e-6;  // of the typical standard deviation
-  const double still_step = kStillStep * lower_median(problem.sigmas);
+  const double still_step = kStillStep * problem.typical_sigma;
   SparseSystem system(problem, springs, placement);
   if (system.unknowns() == 0) return {};
   double damping = 1e-4;
@@ -168,7 +167,7 @@ RefineOutcome refine(const RangeProblem& problem, const std::vector<Spring>& spr
     if (options.progress && !options.progress(progress)) throw Cancelled();
     const double before = cost;
     const bool moved = damped_step(system, damping, cost);
-    if (!moved || before - cost <= kStillCost * before || system.largest_step() <= still_step) {
+    if (!moved || before - cost <= options.still * before || system.largest_step() <= still_step) {
       return {k + 1, true};
     }
   }

@@ -25,6 +25,7 @@ struct RefineOptions {
   /// least squares.
   double width = std::numeric_limits<double>::infinity();
   int max_iterations = 100;
+  double still = 1e-8;  ///< relative decrease of the loss at which it ends
   ProgressCallback progress = {};
 };
 

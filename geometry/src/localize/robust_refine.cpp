@@ -30,16 +30,6 @@ double median_deviation(const RangeProblem& problem, const Placement& placement)
   return deviations.empty() ? 0.0 : lower_median(std::move(deviations));
 }
 
-// Nodes whose surroundings have changed.
-std::vector<bool> with_neighbours(const RangeProblem& problem, const std::vector<Index>& nodes) {
-  std::vector<bool> result(problem.nodes, false);
-  for (const Index v : nodes) {
-    result[v] = true;
-    for (const auto& neighbour : problem.pair_graph.neighbours(v)) result[neighbour.vertex] = true;
-  }
-  return result;
-}
-
 class Stages {
  public:
   Stages(const RangeProblem& problem, Placement& placement, const LocalizeOptions& options)
@@ -74,10 +64,14 @@ std::vector<bool> ranges_within(const RangeProblem& problem, const Placement& pl
 
 RefineOutcome refine_at_width(const RangeProblem& problem, double width, int max_iterations,
                               const LocalizeOptions& options, Placement& placement) {
-  constexpr double kReach = 4.0;  // widths beyond which a range has no say
+  constexpr double kReach = 4.0;   // widths beyond which a range has no say
+  constexpr double kStill = 1e-4;  // the next width, or the leave-one-out tests, go on from here
   const auto use = ranges_within(problem, placement, std::pow(kReach * width, 2));
   return refine(problem, use, placement,
-                {.width = width, .max_iterations = max_iterations, .progress = options.progress});
+                {.width = width,
+                 .max_iterations = max_iterations,
+                 .still = kStill,
+                 .progress = options.progress});
 }
 
 RefineOutcome refine_robustly(const RangeProblem& problem, const std::vector<bool>& trusted,
@@ -98,7 +92,7 @@ RefineOutcome refine_robustly(const RangeProblem& problem, const std::vector<boo
     const auto moved = relocate(problem, gate, evidence, options, among, placement);
     if (moved.empty()) break;
     stages.fit(narrow, kStageIterations);
-    among = with_neighbours(problem, moved);
+    among = within_steps(problem, moved, 1);  // whose surroundings have changed
   }
   return stages.total();
 }

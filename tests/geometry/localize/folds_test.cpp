@@ -42,7 +42,8 @@ struct Map {
         placement{hinged_points(bend), std::vector<bool>(13, true)} {}
 
   std::vector<Fold> folds() const {
-    return find_folds(problem, trusted, kNoAbsence.limits, {.threads = 1}, placement);
+    return find_folds(problem, trusted, kNoAbsence.limits, {.threads = 1}, placement,
+                      std::vector<bool>(problem.nodes, true));
   }
 
   static const Fold* fold_of(const std::vector<Fold>& folds, const std::vector<Index>& part) {
@@ -112,7 +113,8 @@ TEST(Folds, NoneInSpaceOrOfNothing) {
   const Eigen::MatrixXd corners = Eigen::MatrixXd::Identity(3, 3);
   const auto problem = make_problem(exact_network(corners, all_pairs({0, 1, 2})));
   const Placement placement{corners, std::vector<bool>(3, true)};
-  EXPECT_TRUE(find_folds(problem, {true, true, true}, {}, {}, placement).empty());
+  EXPECT_TRUE(
+      find_folds(problem, {true, true, true}, {}, {}, placement, {true, true, true}).empty());
 }
 
 TEST(OpenFolds, MirrorsWhatFitsBetterThatWay) {
