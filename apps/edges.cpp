@@ -2,12 +2,18 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "console.hpp"
+#include "isotherm/base/error.hpp"
 #include "isotherm/geometry/neighbour_graph.hpp"
 #include "isotherm/geometry/point_cloud.hpp"
+#include "isotherm/geometry/position_file.hpp"
 #include "isotherm/spectral/graph_file.hpp"
 #include "isotherm/spectral/judge_edges.hpp"
 #include "isotherm/spectral/verdict_file.hpp"
@@ -26,12 +32,13 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
   std::string output;
   std::string verdicts;
   bool keep_ambiguous = false;
+  std::string positions;          // of the vertices, a file
   std::optional<int> neighbours;  // of a point, where the input is a cloud
   std::optional<double> radius;   // in the unit of the cloud
   ReportFlags explain;
 
   struct Input : GraphFile {
-    Eigen::MatrixXd points;  // where the input is a cloud
+    Eigen::MatrixXd points;  // dimension x vertices; empty if not known
   };
 
   int run() {
@@ -41,7 +48,7 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
     options.progress = progress_line(flags);
     const auto file = read_input();
     for (const auto& diagnostic : file.report.diagnostics) warn(flags, to_string(diagnostic));
-    auto result = judge_edges(file.graph, options);
+    auto result = judge_edges(file.graph, options, file.points);
     const auto left = kept(file.graph, result.verdicts);
     if (explain.wanted()) {
       const EdgesRun run{file_title(input), options, file.ids, file.points};
@@ -57,7 +64,11 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
 
   // The graph of the file, or of the points in it.
   Input read_input() const {
-    if (!neighbours && !radius) return {read_graph(input, {.strict = flags.strict}), {}};
+    if (!neighbours && !radius) {
+      auto file = read_graph(input, {.strict = flags.strict});
+      auto points = positions.empty() ? Eigen::MatrixXd() : positions_of(file.ids);
+      return {std::move(file), std::move(points)};
+    }
     auto cloud = geometry::read_points(input);
     const geometry::NeighbourGraphOptions how = {.threads = flags.threads,
                                                  .progress = progress_line(flags)};
@@ -69,6 +80,22 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
     file.report = std::move(cloud.report);
     file.points = std::move(cloud.points);
     return file;
+  }
+
+  // Those of the vertices, from their file, which may have more.
+  Eigen::MatrixXd positions_of(const std::vector<std::uint64_t>& ids) const {
+    const auto file = geometry::read_positions(positions);
+    std::unordered_map<std::string, Eigen::Index> column_of;
+    for (const auto& name : file.names) column_of.emplace(name, column_of.size());
+    std::vector<Eigen::Index> columns;
+    for (const auto id : ids) {
+      const auto found = column_of.find(std::to_string(id));
+      if (found == column_of.end()) {
+        throw ParseError({positions, 0, 0}, std::to_string(id), "no position of this vertex");
+      }
+      columns.push_back(found->second);
+    }
+    return file.positions(Eigen::all, columns);
   }
 
   // Verdict files carry the input's own vertex numbers.
@@ -122,10 +149,15 @@ Verb add_edges(CLI::App& root) {
   auto* neighbours = verb->add_option("--neighbours", edges->neighbours,
                                       "the input is points: join each to so many nearest ones")
                          ->type_name("COUNT");
-  verb->add_option("--radius", edges->radius,
-                   "the input is points: join those at most so far from each other")
-      ->type_name("DISTANCE")
-      ->excludes(neighbours);
+  auto* radius = verb->add_option("--radius", edges->radius,
+                                  "the input is points: join those at most so far from each other")
+                     ->type_name("DISTANCE")
+                     ->excludes(neighbours);
+  verb->add_option("--positions", edges->positions,
+                   "node,x,y[,z] of the vertices: for --method rank, and to draw them")
+      ->type_name("FILE")
+      ->excludes(neighbours)
+      ->excludes(radius);
   verb->add_option("-o,--output", edges->output, "kept edges to write, as CSV (- for stdout)")
       ->type_name("FILE");
   verb->add_option("--verdicts", edges->verdicts, "decision and reason an edge, as CSV")

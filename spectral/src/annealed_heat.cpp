@@ -86,18 +86,10 @@ void judge_in_plane(const WeightedGraph& graph, std::span<const double> lengths,
   result.in_plane = true;
 }
 
-/// Edges, from the most suspicious on.
-std::vector<Index> by_score(const std::vector<double>& scores) {
-  std::vector<Index> order(scores.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return scores[a] > scores[b]; });
-  return order;
-}
-
 /// From judgements about chains, those about each of their edges. A score is lowered to
 /// that of single edges that are as likely true.
 void share_among_chains(std::span<const double> lengths, AnnealedHeat& result) {
-  const auto order = by_score(result.scores);
+  const auto order = by_suspicion(result.scores);
   const auto of_chains = result;
   for (std::size_t k = 0; k < lengths.size(); ++k) {
     if (lengths[k] == 1.0) continue;
@@ -109,16 +101,6 @@ void share_among_chains(std::span<const double> lengths, AnnealedHeat& result) {
       result.scores[k] = std::min(of_chains.scores[k], of_chains.scores[*alike]);
     }
   }
-}
-
-double find_threshold(const AnnealedHeat& result, double chance) {
-  const auto order = by_score(result.scores);
-  // The probability falls with the score, so that a score stands for it.
-  const auto most = std::min(static_cast<std::size_t>(std::ceil(result.false_count)), order.size());
-  std::size_t pruned = 0;
-  while (pruned < most && result.truth[order[pruned]] < chance) ++pruned;
-  if (pruned == 0) return std::numeric_limits<double>::infinity();
-  return pruned < order.size() ? result.scores[order[pruned]] : 0.0;
 }
 
 /// Judges the edges of a graph without bridges and chains.
@@ -155,7 +137,8 @@ AnnealedHeat anneal_reduced(const WeightedGraph& graph, std::span<const double> 
                   .progress = options.progress},
                  result);
   share_among_chains(lengths, result);
-  result.threshold = find_threshold(result, options.chance);
+  result.threshold =
+      rejection_threshold(result.scores, {result.truth, result.false_count}, options.chance);
   return result;
 }
 

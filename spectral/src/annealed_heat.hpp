@@ -29,9 +29,7 @@ struct AnnealedHeat {
   std::vector<double> truth;
   std::vector<bool> bridge;  ///< nothing is known about these
   double false_count = 0.0;  ///< estimated number of false edges, a chain counted once
-  /// Edges that score more are to be pruned: those less likely true than `chance`, but no more
-  /// of them than there are false ones by the estimate, so that one expects to prune as many
-  /// true edges as one keeps false ones. Infinite if there are none.
+  /// Edges that score more are to be pruned (`rejection_threshold`); infinite if there are none.
   double threshold = std::numeric_limits<double>::infinity();
   double scale = 0.0;     ///< of the last round, in expected steps
   int horizon = 0;        ///< of the last round, in steps

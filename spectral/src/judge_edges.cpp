@@ -9,10 +9,13 @@
 #include <string>
 
 #include "annealed_heat.hpp"
+#include "control_pairs.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/text_writer.hpp"
 #include "isotherm/spectral/effective_resistance.hpp"
 #include "isotherm/spectral/heat_affinity.hpp"
+#include "pair_ranks.hpp"
+#include "two_groups.hpp"
 
 namespace isotherm::spectral {
 namespace {
@@ -89,6 +92,7 @@ std::vector<double> common_neighbour_scores(const WeightedGraph& graph) {
 std::vector<double> scores_of(const WeightedGraph& graph, const JudgeEdgesOptions& options) {
   switch (options.method) {
     case EdgeScore::heat:
+    case EdgeScore::rank:
       break;
     case EdgeScore::affinity:
       return affinity_scores(graph, options);
@@ -144,6 +148,14 @@ JudgeEdgesResult judge_by_threshold(const WeightedGraph& graph, const JudgeEdges
   return judge_all(graph, scores, threshold, enum_name(options.method));
 }
 
+/// A threshold with the mean of |2 p - 1|: how decided the probabilities of the edges are.
+Threshold decided_threshold(double value, const std::vector<double>& truth) {
+  Threshold threshold{value, 0.0, !std::isfinite(value)};
+  for (const double p : truth) threshold.separation += std::abs(2.0 * p - 1.0);
+  if (!truth.empty()) threshold.separation /= static_cast<double>(truth.size());
+  return threshold;
+}
+
 JudgeEdgesResult judge_by_heat(const WeightedGraph& graph, const JudgeEdgesOptions& options) {
   auto heat = detail::anneal_heat(graph, {.rounds = options.rounds,
                                           .chance = options.chance,
@@ -151,19 +163,36 @@ JudgeEdgesResult judge_by_heat(const WeightedGraph& graph, const JudgeEdgesOptio
                                           .seed = options.seed,
                                           .threads = options.threads,
                                           .progress = options.progress});
-  Threshold threshold{heat.threshold, 0.0, !std::isfinite(heat.threshold)};
-  double count = 0.0;
+  std::vector<double> judged;
   for (std::size_t e = 0; e < heat.scores.size(); ++e) {
     const auto& edge = graph.edges()[e];
     if (heat.bridge[e]) heat.scores[e] = kUnknown;
-    if (heat.bridge[e] || edge.from == edge.to) continue;
-    threshold.separation += std::abs(2.0 * heat.truth[e] - 1.0);
-    count += 1.0;
+    if (!heat.bridge[e] && edge.from != edge.to) judged.push_back(heat.truth[e]);
   }
-  if (count > 0.0) threshold.separation /= count;
   const std::string stage = "heat scale " + format_number(heat.scale) + " steps " +
                             std::to_string(heat.horizon) + (heat.in_plane ? " crossings" : "");
-  return judge_all(graph, heat.scores, threshold, stage);
+  return judge_all(graph, heat.scores, decided_threshold(heat.threshold, judged), stage);
+}
+
+void check_positions(const WeightedGraph& graph, const Eigen::MatrixXd& positions) {
+  if (positions.cols() != graph.vertex_count() || positions.rows() == 0) {
+    throw InvalidArgument("positions", "method rank needs one for each vertex");
+  }
+  if (!positions.allFinite()) throw InvalidArgument("positions", "must be finite");
+}
+
+JudgeEdgesResult judge_by_rank(const WeightedGraph& graph, const JudgeEdgesOptions& options,
+                               const Eigen::MatrixXd& positions) {
+  check_positions(graph, positions);
+  const auto ranks_of = [&](const std::vector<VertexPair>& pairs) {
+    return detail::pair_ranks(positions, pairs, options.threads, options.progress);
+  };
+  const auto scores = ranks_of(edge_pairs(graph));
+  const auto nulls = ranks_of(detail::control_pairs(graph, options.control, options.seed));
+  const auto groups = detail::separate_groups(scores, nulls);
+  const double threshold = detail::rejection_threshold(scores, groups, options.chance);
+  return judge_all(graph, scores, decided_threshold(threshold, groups.truth),
+                   enum_name(options.method));
 }
 
 }  // namespace
@@ -184,11 +213,13 @@ double jaccard_index(const WeightedGraph& graph, Index edge) {
   return all == 0 ? -1.0 : static_cast<double>(common) / static_cast<double>(all);
 }
 
-JudgeEdgesResult judge_edges(const WeightedGraph& graph, const JudgeEdgesOptions& options) {
+JudgeEdgesResult judge_edges(const WeightedGraph& graph, const JudgeEdgesOptions& options,
+                             const Eigen::MatrixXd& positions) {
   options.validate();
   const auto start = std::chrono::steady_clock::now();
-  auto result = options.method == EdgeScore::heat ? judge_by_heat(graph, options)
-                                                  : judge_by_threshold(graph, options);
+  auto result = options.method == EdgeScore::heat   ? judge_by_heat(graph, options)
+                : options.method == EdgeScore::rank ? judge_by_rank(graph, options, positions)
+                                                    : judge_by_threshold(graph, options);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace isotherm::spectral::detail {
 namespace {
@@ -83,6 +85,23 @@ TwoGroups separate_groups(std::span<const double> scores, std::span<const double
     groups.truth[k] = std::max(0.0, 1.0 - block->nulls / block->scores);
   }
   return groups;
+}
+
+std::vector<Index> by_suspicion(std::span<const double> scores) {
+  std::vector<Index> order(scores.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return scores[a] > scores[b]; });
+  return order;
+}
+
+double rejection_threshold(std::span<const double> scores, const TwoGroups& groups, double chance) {
+  const auto order = by_suspicion(scores);
+  // The probability falls with the score, so that a score stands for it.
+  const auto most = std::min(static_cast<std::size_t>(std::ceil(groups.false_count)), order.size());
+  std::size_t rejected = 0;
+  while (rejected < most && groups.truth[order[rejected]] < chance) ++rejected;
+  if (rejected == 0) return std::numeric_limits<double>::infinity();
+  return rejected < order.size() ? scores[order[rejected]] : 0.0;
 }
 
 }  // namespace isotherm::spectral::detail

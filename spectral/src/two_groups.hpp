@@ -3,6 +3,8 @@
 #include <span>
 #include <vector>
 
+#include "isotherm/spectral/types.hpp"
+
 namespace isotherm::spectral::detail {
 
 /// A list of scores explained as a mixture of true and false ones.
@@ -20,5 +22,13 @@ struct TwoGroups {
 /// and so the probability never rises with the score. Without null scores, all are
 /// true. O(q log q) for q scores of both kinds.
 TwoGroups separate_groups(std::span<const double> scores, std::span<const double> null_scores);
+
+/// Places of scores, from the largest on.
+std::vector<Index> by_suspicion(std::span<const double> scores);
+
+/// Scores above this are to be taken for false ones: those less likely true than `chance`, but no
+/// more of them than there are false ones by the estimate, so that one expects to reject as many
+/// true ones as one keeps false ones. Infinite if there are none.
+double rejection_threshold(std::span<const double> scores, const TwoGroups& groups, double chance);
 
 }  // namespace isotherm::spectral::detail

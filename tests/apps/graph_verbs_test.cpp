@@ -64,6 +64,27 @@ TEST_F(GraphVerbs, EdgesJoinsPoints) {
   EXPECT_THAT(result.err, HasSubstr("bad_points.csv:2:3: expected a coordinate"));
 }
 
+TEST_F(GraphVerbs, EdgesTakesPositions) {
+  make_strip();
+  std::string text = "node,x,y\n7,0,0\n";  // and one of no vertex
+  for (int v = 139; v >= 100; --v) text += std::to_string(v) + "," + std::to_string(v) + ",0\n";
+  write_text(folder / "xy.csv", text);
+  const std::string edges = "edges strip.csv --method rank --verdicts - ";
+  EXPECT_THAT(run_ok(edges + "--positions xy.csv"), HasSubstr("\n114,100,135,prune,34,"));
+  EXPECT_EQ(run(edges).code, 2);
+  EXPECT_EQ(run(edges + "--positions none.csv").code, 3);
+  EXPECT_EQ(run(edges + "--positions xy.csv --radius 1").code, 2);
+  const auto error_of = [&](const std::string& rows) {
+    write_text(folder / "bad.csv", rows);
+    const auto result = run(edges + "--positions bad.csv");
+    EXPECT_EQ(result.code, 3);
+    return result.err;
+  };
+  EXPECT_THAT(error_of("node,x,y\n100,0,0\n"), HasSubstr("no position of this vertex (got '101')"));
+  EXPECT_THAT(error_of(text + "100,0,0\n"), HasSubstr("bad.csv:43"));
+  EXPECT_THAT(error_of("node,x,y\n100,nan,0\n"), HasSubstr("a finite number"));
+}
+
 TEST_F(GraphVerbs, EmbedWritesOneRowAVertex) {
   make_strip();
   for (const std::string method : {"commute-time", "heat", "eigenmaps"}) {

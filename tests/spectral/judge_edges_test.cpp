@@ -190,6 +190,51 @@ TEST(JudgeEdges, HeatTakesDegenerateGraphs) {
   EXPECT_EQ(count(judge_edges(star_graph(50)).verdicts, Verdict::ambiguous), 49);
 }
 
+// A grid squeezed to ever smaller steps towards one side, with edges across it at the end.
+struct Map {
+  WeightedGraph graph;
+  Eigen::MatrixXd positions;
+};
+
+Map squeezed_grid(Index width, const std::vector<std::pair<Index, Index>>& across) {
+  const auto grid = grid_graph(width, width);
+  std::vector<WeightedEdge> edges(grid.edges().begin(), grid.edges().end());
+  for (const auto& [from, to] : across) edges.push_back({from, to, 1.0});
+  Eigen::MatrixXd positions(2, width * width);
+  for (Index v = 0; v < width * width; ++v) {
+    positions.col(v) << std::exp(0.15 * (v % width)), std::exp(0.15 * (v / width));
+  }
+  return {{width * width, std::move(edges)}, std::move(positions)};
+}
+
+TEST(JudgeEdges, RankFindsWhatReachesPastOthers) {
+  // The longest true edge is longer than some of the false ones.
+  const auto [graph, positions] =
+      squeezed_grid(30, {{0, 465}, {31, 680}, {62, 610}, {5, 455}, {400, 870}});
+  const auto verdicts = judge_edges(graph, {.method = EdgeScore::rank}, positions).verdicts;
+  const auto pruned = [](const EdgeVerdict& v) { return v.verdict == Verdict::prune; };
+  EXPECT_EQ(std::count_if(verdicts.end() - 5, verdicts.end(), pruned), 5);
+  EXPECT_EQ(std::count_if(verdicts.begin(), verdicts.end() - 5, pruned), 0);
+  const auto [clean, same] = squeezed_grid(30, {});
+  EXPECT_EQ(count(judge_edges(clean, {.method = EdgeScore::rank}, same).verdicts, Verdict::keep),
+            clean.edge_count());
+}
+
+TEST(JudgeEdges, RankTakesDegenerateInputAndNeedsPositions) {
+  const JudgeEdgesOptions rank = {.method = EdgeScore::rank};
+  const auto graph = grid_graph(6, 6);
+  const Eigen::MatrixXd heap = Eigen::MatrixXd::Zero(2, 36);
+  EXPECT_EQ(count(judge_edges(graph, rank, heap).verdicts, Verdict::keep), graph.edge_count());
+  EXPECT_EQ(judge_edges(complete_graph(5), rank, heap.leftCols(5)).verdicts.size(), 10);
+  EXPECT_TRUE(judge_edges(WeightedGraph(), rank, Eigen::MatrixXd(2, 0)).verdicts.empty());
+  const auto pair = judge_edges({2, {{0, 1, 1.0}, {1, 1, 1.0}}}, rank, heap.leftCols(2)).verdicts;
+  EXPECT_EQ(pair[0].verdict, Verdict::keep);
+  EXPECT_EQ(pair[1].stage, "self-loop");
+  EXPECT_THROW(judge_edges(graph, rank), InvalidArgument);
+  EXPECT_THROW(judge_edges(graph, rank, heap.leftCols(35)), InvalidArgument);
+  EXPECT_THROW(judge_edges(graph, rank, heap.array() / 0.0), InvalidArgument);
+}
+
 TEST(JudgeEdges, BridgesAreAmbiguousAndSelfLoopsKept) {
   const WeightedGraph graph(
       7, {{0, 1, 1.0}, {1, 2, 1.0}, {2, 0, 1.0}, {2, 3, 1.0}, {4, 4, 1.0}, {5, 6, 2.0}});

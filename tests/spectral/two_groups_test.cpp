@@ -70,5 +70,16 @@ TEST(TwoGroups, EqualScoresShareOneProbability) {
   EXPECT_THAT(separate_groups(nulls, nulls).truth, Each(0.0));
 }
 
+TEST(TwoGroups, RejectsNoMoreThanThereAreFalseOnes) {
+  const std::vector<double> scores = {5.0, 1.0, 4.0, 2.0, 3.0};
+  const TwoGroups groups = {{0.0, 0.9, 0.2, 0.8, 0.5}, 4.0};
+  EXPECT_EQ(by_suspicion(scores), (std::vector<Index>{0, 2, 4, 3, 1}));
+  EXPECT_EQ(rejection_threshold(scores, groups, 0.7), 2.0);
+  EXPECT_EQ(rejection_threshold(scores, groups, 0.4), 3.0);
+  EXPECT_EQ(rejection_threshold(scores, {groups.truth, 1.5}, 0.7), 3.0);
+  EXPECT_TRUE(std::isinf(rejection_threshold(scores, {groups.truth, 0.0}, 0.7)));
+  EXPECT_TRUE(std::isinf(rejection_threshold({}, {}, 0.7)));
+}
+
 }  // namespace
 }  // namespace isotherm::spectral::detail

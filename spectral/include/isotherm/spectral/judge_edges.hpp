@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "isotherm/base/options.hpp"
 #include "isotherm/base/progress.hpp"
 #include "isotherm/spectral/edge_verdicts.hpp"
@@ -21,14 +23,16 @@ enum class EdgeScore {
   resistance,         ///< leave-one-out effective resistance
   jaccard,            ///< 1 - |common neighbours| / |all neighbours|: the baseline
   common_neighbours,  ///< 1 / (1 + |common neighbours|)
+  rank,               ///< how many vertices lie nearer, where positions are known
 };
 
-constexpr std::array<EnumName<EdgeScore>, 5> enum_names(EdgeScore) {
+constexpr std::array<EnumName<EdgeScore>, 6> enum_names(EdgeScore) {
   return {{{EdgeScore::heat, "heat"},
            {EdgeScore::affinity, "affinity"},
            {EdgeScore::resistance, "resistance"},
            {EdgeScore::jaccard, "jaccard"},
-           {EdgeScore::common_neighbours, "common-neighbours"}}};
+           {EdgeScore::common_neighbours, "common-neighbours"},
+           {EdgeScore::rank, "rank"}}};
 }
 
 /// Which pairs of vertices false edges are taken to resemble.
@@ -46,22 +50,22 @@ struct JudgeEdgesOptions {
   /// Heat: how often the edges are judged, each time in the graph weighted by the
   /// judgement before and at twice the scale; in [1, 10].
   int rounds = 3;
-  /// Heat: the pairs that edges are compared with. `near` finds short circuits that run
+  /// Heat, rank: the pairs that edges are compared with. `near` finds short circuits that run
   /// side by side, at the price of a few more true edges.
   ControlGroup control = ControlGroup::anywhere;
-  /// Heat: an edge is pruned where it is less likely than this to be a true one, but no
+  /// Heat, rank: an edge is pruned where it is less likely than this to be a true one, but no
   /// more edges are than there are false ones by the estimate; in (0, 1). Less prunes less;
   /// with 0.7 precision and recall are about equal on Swiss rolls.
   double chance = 0.7;
   /// Affinity: diffusion time t of exp(-tL), in units of 1 / weight; finite, > 0.
   /// About one over the weight of a typical edge looks a few hops far.
   double scale = 1.0;
-  /// How the threshold is found from the scores, for all methods but heat.
+  /// How the threshold is found from the scores, for all methods but heat and rank.
   ThresholdRule threshold = ThresholdRule::mixture;
   /// Standard deviations above the mean, for the mean-sigma rule; finite.
   double konst = 1.0;
   double tolerance = 1e-9;  ///< affinity: of the heat kernel's entries, absolute, > 0
-  std::uint64_t seed = 1;   ///< heat: of the random pairs that edges are compared with
+  std::uint64_t seed = 1;   ///< heat, rank: of the random pairs that edges are compared with
   int threads = 0;          ///< 0: all cores; results do not depend on it
   ProgressCallback progress = {};
 
@@ -74,8 +78,8 @@ requires std::same_as<std::remove_const_t<Options>, JudgeEdgesOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("method", options.method, "what an edge is judged by");
   visit("rounds", options.rounds, "heat: how often edges are judged");
-  visit("control", options.control, "heat: pairs that false edges resemble");
-  visit("chance", options.chance, "heat: prune what is less likely true");
+  visit("control", options.control, "heat, rank: pairs that false edges resemble");
+  visit("chance", options.chance, "heat, rank: prune what is less likely true");
   visit("scale", options.scale, "affinity: diffusion time");
   visit("threshold", options.threshold, "other methods: rule that splits the scores");
   visit("konst", options.konst, "deviations above the mean, for mean-sigma");
@@ -84,7 +88,7 @@ void visit_fields(Options& options, Visitor&& visit) {
 
 struct JudgeEdgesResult {
   EdgeVerdicts verdicts;  ///< one an edge, in order of id; vertices by position
-  Threshold threshold;    ///< for heat, its separation is the mean of |2 p - 1|
+  Threshold threshold;    ///< for heat and rank, its separation is the mean of |2 p - 1|
   double seconds = 0.0;
 };
 
@@ -101,8 +105,16 @@ struct JudgeEdgesResult {
 /// edges are judged as one, and so is a chain of edges through vertices of degree two, of
 /// which one at most is taken to be false. Time n times the edges within a few steps of a
 /// vertex; the other methods' costs are those of their functions.
-/// @throws InvalidArgument, NumericalError, Cancelled
-JudgeEdgesResult judge_edges(const WeightedGraph& graph, const JudgeEdgesOptions& options = {});
+///
+/// Rank is for vertices of known `positions` (dimension x vertices), which the other methods do not
+/// use. It scores an edge by how many vertices are nearer to one of its ends than the other end is,
+/// counted from the end that has fewer of them: where vertices are sparse true edges are long, but
+/// do not reach past many. The probability is found as for heat, in one round; bridges and
+/// chains are judged like other edges. O(edges sqrt n) in the plane.
+/// @throws InvalidArgument, also for rank unless there is a finite position for each vertex;
+///   NumericalError, Cancelled
+JudgeEdgesResult judge_edges(const WeightedGraph& graph, const JudgeEdgesOptions& options = {},
+                             const Eigen::MatrixXd& positions = {});
 
 /// Jaccard index of the neighbourhoods of an edge's ends, the ends themselves
 /// left out: in [0, 1]; -1 if neither has any other neighbour. Ordered ends and
