@@ -276,8 +276,21 @@ class Firmness {
     const auto found = multilaterate(network, limits);
     if (!found || found->rival_cost - found->cost < clear_) return false;
     network.positions.col(network.fixed) = placement_.positions.col(node);
-    return 2 * agreeing(network, gate_) > static_cast<int>(network.ranges.size()) &&
+    const int agree = agreeing(network, gate_);
+    // A node most of whose ranges lead to nodes that are not firm is one of these, rather: d + 1
+    // of the others agree somewhere by chance if one of them is false.
+    if (hangs_elsewhere(firm, node) && agree <= problem_.dimension + 1) return false;
+    return 2 * agree > static_cast<int>(network.ranges.size()) &&
            place_cost(network, limits) - found->cost < 0.5 * clear_;
+  }
+
+  bool hangs_elsewhere(const Placement& firm, Index node) const {
+    int here = 0;
+    int elsewhere = 0;
+    for (const auto& [vertex, edge] : problem_.pair_graph.neighbours(node)) {
+      if (trusted_[edge]) ++(firm.placed[vertex] ? here : elsewhere);
+    }
+    return elsewhere > here;
   }
 
   // Whether the node stands among others that it should have ranges to: it, or these, lie on

@@ -143,6 +143,18 @@ class Start {
     return is_firm(result, kFair) ? repair(std::move(result)) : result;
   }
 
+  // A large part that hangs on few nodes may have turned, and what lay between it and the rest lost
+  // its place: springs of wide loss draw such a tear together.
+  Candidate drawn_together(Candidate best) const {
+    constexpr double kTear = 10.0;  // ranges that fit afterwards, at least
+    auto map = best.all;
+    unfold(problem_, trusted_, evidence_.absence, errors(), gate_, options_, map);
+    refine_robustly(problem_, trusted_, gate_, options_, map);
+    if (credit(map) < credit(best.all) + kTear * gate_) return best;
+    auto rival = finished(std::move(map));
+    return rival.credit > best.credit ? std::move(rival) : std::move(best);
+  }
+
   // Of a candidate and the one that some parts make, that of which more is explained. Parts that
   // explain much less than a fair candidate does are not worth completing.
   Candidate better(Candidate best, std::vector<Placement> parts) const {
@@ -208,7 +220,7 @@ Placement place_initially(const RangeProblem& problem, const Placement& anchors,
   if (!start.is_firm(best, kGood)) best = start.better(std::move(best), start.by_paths());
   if (!start.is_firm(best, kFair)) best = start.better(std::move(best), start.grown());
   if (!start.is_firm(best, kFair)) best = start.repair(std::move(best));
-  return std::move(best.all);
+  return std::move(start.drawn_together(std::move(best)).all);
 }
 
 }  // namespace isotherm::geometry::detail
