@@ -1,6 +1,7 @@
 #include "localize/path_map.hpp"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include "isotherm/base/statistics.hpp"
 #include "isotherm/geometry/point_alignment.hpp"
@@ -56,6 +57,25 @@ TEST(PathMap, StandsRangesThatAreTooLong) {
   const auto evidence = learn_evidence(problem, trusted, kGate, make_patches(problem, trusted, {}));
   const auto map = map_by_paths(problem, trusted, evidence.absence, Errors::too_long, kGate, {});
   EXPECT_GT(share_near(map, simulated.truth, 0.5 * simulated.radius), 0.9);
+}
+
+TEST(Unfold, DrawsATornMapTogether) {
+  // A corner that has turned about the end of one of its sides, away from the rest.
+  const auto simulated =
+      simulate_network({.nodes = 900, .anchors = 0, .degree = 14.0, .noise = 0.02, .seed = 4});
+  const auto problem = make_problem(simulated.network);
+  const auto trusted = all_of(problem);
+  const Eigen::Rotation2Dd turn(0.12);
+  const Eigen::Vector2d hinge(0.6, 1.0);
+  Placement map{simulated.truth, std::vector<bool>(900, true)};
+  for (Index v = 0; v < 900; ++v) {
+    const Eigen::Vector2d place = simulated.truth.col(v);
+    if (place.minCoeff() > 0.6) map.positions.col(v) = turn * (place - hinge) + hinge;
+  }
+  const double near = 0.3 * simulated.radius;
+  EXPECT_LT(share_near(map, simulated.truth, near), 0.9);
+  unfold(problem, trusted, {}, Errors::any, kGate, {}, map);
+  EXPECT_GT(share_near(map, simulated.truth, near), 0.98);
 }
 
 TEST(PathMap, PlacesTheLargestPart) {
