@@ -277,13 +277,14 @@ class Firmness {
     if (!found || found->rival_cost - found->cost < clear_) return false;
     network.positions.col(network.fixed) = placement_.positions.col(node);
     const int agree = agreeing(network, gate_);
-    // A node most of whose ranges lead to nodes that are not firm is one of these, rather: d + 1
-    // of the others agree somewhere by chance if one of them is false.
+    // Such a node belongs with those that are not firm, rather: d + 1 ranges, one of them false,
+    // agree somewhere by chance.
     if (hangs_elsewhere(firm, node) && agree <= problem_.dimension + 1) return false;
     return 2 * agree > static_cast<int>(network.ranges.size()) &&
            place_cost(network, limits) - found->cost < 0.5 * clear_;
   }
 
+  // Whether most of the node's ranges lead to nodes that are not firm.
   bool hangs_elsewhere(const Placement& firm, Index node) const {
     int here = 0;
     int elsewhere = 0;
