@@ -20,8 +20,9 @@
 namespace isotherm::geometry::detail {
 namespace {
 
-constexpr double kFair = 0.5;   // of the nodes, that are firm in a map which is right as a whole
-constexpr double kGood = 0.95;  // and in one that needs no rival
+constexpr double kFair = 0.5;     // of the nodes, that are firm in a map which is right as a whole
+constexpr double kGood = 0.95;    // and in one that needs no rival
+constexpr double kWhole = 0.995;  // and in one that has no tear
 
 // How maps are started, and brought together.
 class Start {
@@ -147,6 +148,7 @@ class Start {
   // its place: springs of wide loss draw such a tear together.
   Candidate drawn_together(Candidate best) const {
     constexpr double kTear = 10.0;  // ranges that fit afterwards, at least
+    if (is_firm(best, kWhole)) return best;
     auto map = best.all;
     unfold(problem_, trusted_, evidence_.absence, errors(), gate_, options_, map);
     refine_robustly(problem_, trusted_, gate_, options_, map);
