@@ -10,7 +10,9 @@ Agreement agreement(const RangeProblem& problem, const std::vector<bool>& truste
   for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
     const auto& pair = problem.pairs[p];
     if (!trusted[p] || !is_placed(placement, pair)) continue;
-    result.cost += std::min(gate, squared_deviation(placement, pair));
+    const double squared = squared_deviation(placement, pair);
+    result.cost += std::min(gate, squared);
+    if (squared <= gate) ++result.fitting;
     ++result.pairs;
   }
   const auto spare = result.pairs - problem.dimension * placed_count(placement);

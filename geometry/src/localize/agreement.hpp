@@ -10,6 +10,7 @@ namespace isotherm::geometry::detail {
 /// How well the trusted pairs of placed nodes fit a placement.
 struct Agreement {
   std::ptrdiff_t pairs = 0;
+  std::ptrdiff_t fitting = 0;  ///< of these, within the gate
   double cost = 0.0;  ///< sum of min(r^2, gate)
   /// By how much, in chi-squared, the pairs are explained more than the coordinates of
   /// the nodes could explain in any case.

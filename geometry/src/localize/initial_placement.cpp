@@ -20,8 +20,9 @@
 namespace isotherm::geometry::detail {
 namespace {
 
-constexpr double kFair = 0.5;     // of the nodes, that are firm in a map which is right as a whole
-constexpr double kGood = 0.95;    // and in one that needs no rival
+constexpr double kFair = 0.5;   // of the nodes, that are firm in a map which is right as a whole
+constexpr double kGood = 0.95;  // and in one that needs no rival, if these trusted pairs fit:
+constexpr double kFitting = 0.9;
 constexpr double kWhole = 0.995;  // and in one that has no tear
 
 // How maps are started, and brought together.
@@ -107,6 +108,14 @@ class Start {
 
   bool is_firm(const Candidate& candidate, double part) const {
     return placed_count(candidate.firm) >= part * problem_.nodes;
+  }
+
+  // Whether it needs no rival. Of a map that many trusted pairs contradict there may be a better
+  // one, however firm it is.
+  bool is_good(const Candidate& candidate) const {
+    const auto found = agreement(problem_, trusted_, gate_, candidate.all);
+    return is_firm(candidate, kGood) &&
+           static_cast<double>(found.fitting) >= kFitting * static_cast<double>(found.pairs);
   }
 
   Candidate candidate(Placement placement) const {
@@ -217,9 +226,8 @@ Placement place_initially(const RangeProblem& problem, const Placement& anchors,
     return stitched;
   }
   auto best = start.finished(std::move(stitched));
-  if (!start.is_firm(best, kGood))
-    best = start.better(std::move(best), start.stitched_and_unfolded());
-  if (!start.is_firm(best, kGood)) best = start.better(std::move(best), start.by_paths());
+  if (!start.is_good(best)) best = start.better(std::move(best), start.stitched_and_unfolded());
+  if (!start.is_good(best)) best = start.better(std::move(best), start.by_paths());
   if (!start.is_firm(best, kFair)) best = start.better(std::move(best), start.grown());
   if (!start.is_firm(best, kFair)) best = start.repair(std::move(best));
   return std::move(start.drawn_together(std::move(best)).all);
