@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "isotherm/geometry/neighbour_graph.hpp"
+#include "localize/point_grid.hpp"
 
 namespace isotherm::geometry::detail {
 namespace {
@@ -112,8 +112,7 @@ Absence Absence::learn(const RangeProblem& problem, const std::vector<bool>& tru
   }
   if (!(counts.end() > 0.0) || nodes.empty()) return {};
   const Eigen::MatrixXd points = placement.positions(Eigen::all, nodes);
-  const auto near = radius_graph(points, counts.end());
-  for (const auto& [a, b, weight] : near.edges()) {
+  for (const auto& [a, b] : near_pairs(points, counts.end())) {
     counts.add(nodes[a], nodes[b], (points.col(a) - points.col(b)).norm());
   }
   return counts.curve();

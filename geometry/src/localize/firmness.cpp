@@ -47,11 +47,20 @@ class Firmness {
       return placement_.placed;
     }
     auto bodies = find_bodies();
-    for (std::size_t base = 0; base < bodies.size(); ++base) absorb(bodies[base], bodies);
+    std::vector<std::vector<std::size_t>> touching(problem_.nodes);
+    for (std::size_t k = 0; k < bodies.size(); ++k) note_body(k, bodies[k], touching);
+    for (std::size_t base = 0; base < bodies.size(); ++base) {
+      auto body = std::move(bodies[base]);
+      bodies[base].clear();
+      const auto before = static_cast<std::ptrdiff_t>(body.size());
+      absorb(body, bodies, touching);
+      note_body(base, {body.begin() + before, body.end()}, touching);
+      bodies[base] = std::move(body);
+    }
     if (problem_.anchored()) {
       auto frame = with(anchors());
       auto firm = spread(frame, anchors(), strict_, {});
-      absorb(firm, bodies);
+      absorb(firm, bodies, touching);
       return complete(std::move(firm), bodies);
     }
     const auto largest =
@@ -138,15 +147,38 @@ class Firmness {
     } while (!released.empty());
   }
 
+  // Enters a body at its nodes and their neighbours.
+  void note_body(std::size_t body, const Nodes& nodes,
+                 std::vector<std::vector<std::size_t>>& touching) const {
+    const auto note = [&](Index v) {
+      if (touching[v].empty() || touching[v].back() != body) touching[v].push_back(body);
+    };
+    for (const Index v : nodes) {
+      note(v);
+      for (const auto& neighbour : problem_.pair_graph.neighbours(v)) note(neighbour.vertex);
+    }
+  }
+
   // Adds to one body those of `others` that are fixed to it, and what they bring, as long
-  // as there are any; these become empty.
-  void absorb(Nodes& body, std::vector<Nodes>& others) const {
+  // as there are any; these become empty. Only bodies that touch what is new are looked at.
+  void absorb(Nodes& body, std::vector<Nodes>& others,
+              const std::vector<std::vector<std::size_t>>& touching) const {
     if (body.empty()) return;
     auto firm = with(body);
+    std::vector<bool> touched(others.size(), false);
+    const auto touch = [&](const Nodes& nodes) {
+      for (const Index v : nodes) {
+        for (const auto k : touching[v]) touched[k] = true;
+      }
+    };
+    touch(body);
     for (bool any = true; any;) {
       any = false;
-      for (auto& other : others) {
-        if (&other == &body || other.empty() || !is_fixed(other, firm)) continue;
+      for (std::size_t k = 0; k < others.size(); ++k) {
+        if (!touched[k]) continue;
+        touched[k] = false;
+        auto& other = others[k];
+        if (other.empty() || !is_fixed(other, firm)) continue;
         Nodes fresh;
         for (const Index v : other) {
           if (!firm.placed[v]) fresh.push_back(v);
@@ -154,6 +186,7 @@ class Firmness {
         }
         const auto added = spread(firm, std::move(fresh), strict_, {});
         body.insert(body.end(), added.begin(), added.end());
+        touch(added);
         other.clear();
         any = true;
       }

@@ -6,8 +6,8 @@
 #include <queue>
 #include <utility>
 
-#include "isotherm/geometry/neighbour_graph.hpp"
 #include "localize/classical_scaling.hpp"
+#include "localize/point_grid.hpp"
 #include "localize/refine.hpp"
 
 namespace isotherm::geometry::detail {
@@ -166,8 +166,7 @@ class Unfolding {
       if (placement_.placed[v]) nodes.push_back(v);
     }
     const Eigen::MatrixXd points = placement_.positions(Eigen::all, nodes);
-    const auto near = radius_graph(points, reach_);
-    for (const auto& [a, b, weight] : near.edges()) {
+    for (const auto& [a, b] : near_pairs(points, reach_)) {
       if (has_range(problem_, nodes[a], nodes[b])) continue;
       springs.push_back({nodes[a], nodes[b], reach_, kSigma * reach_, 0.0, kWidth});
     }

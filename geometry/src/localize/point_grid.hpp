@@ -63,4 +63,9 @@ class PointGrid {
   std::unordered_map<std::uint64_t, std::vector<std::pair<std::int32_t, Point>>> cells_;
 };
 
+/// Pairs of columns of `points` at most `radius` (> 0) from each other, ascending; of each point
+/// with some at most of the later ones, since of a heap there would be too many.
+std::vector<std::pair<std::int32_t, std::int32_t>> near_pairs(const Eigen::MatrixXd& points,
+                                                              double radius);
+
 }  // namespace isotherm::geometry::detail

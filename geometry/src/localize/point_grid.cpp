@@ -1,0 +1,26 @@
+#include "localize/point_grid.hpp"
+
+namespace isotherm::geometry::detail {
+
+std::vector<std::pair<std::int32_t, std::int32_t>> near_pairs(const Eigen::MatrixXd& points,
+                                                              double radius) {
+  constexpr std::size_t kMost = 300;  // several times what a network has
+  const auto n = static_cast<std::int32_t>(points.cols());
+  PointGrid grid(radius);
+  for (std::int32_t v = 0; v < n; ++v) grid.insert(v, points.col(v));
+  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+  std::vector<std::int32_t> found;
+  for (std::int32_t v = 0; v < n; ++v) {
+    found.clear();
+    const Point place = points.col(v);
+    grid.visit_near(place, radius, [&](std::int32_t other, const Point& position) {
+      if (other <= v || found.size() == kMost || !((position - place).norm() <= radius)) return;
+      found.push_back(other);
+    });
+    std::sort(found.begin(), found.end());
+    for (const auto other : found) pairs.emplace_back(v, other);
+  }
+  return pairs;
+}
+
+}  // namespace isotherm::geometry::detail
