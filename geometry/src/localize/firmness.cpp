@@ -47,6 +47,7 @@ class Firmness {
       return placement_.placed;
     }
     auto bodies = find_bodies();
+    // By node, the bodies that it is in or next to.
     std::vector<std::vector<std::size_t>> touching(problem_.nodes);
     for (std::size_t k = 0; k < bodies.size(); ++k) note_body(k, bodies[k], touching);
     for (std::size_t base = 0; base < bodies.size(); ++base) {
