@@ -34,11 +34,13 @@ std::vector<std::vector<Index>> agreeing_groups(const MutualSupport& support,
                                                 std::size_t loop_count) {
   std::vector<Index> parent(loop_count, -1);
   for (const Index k : eligible) parent[k] = k;
-  for (const auto& link : support.agreeing) {
-    if (parent[link.first] < 0 || parent[link.second] < 0) continue;
-    const Index a = find_root(parent, link.first);
-    const Index b = find_root(parent, link.second);
-    parent[std::max(a, b)] = std::min(a, b);
+  for (const auto* links : {&support.copied, &support.agreeing}) {
+    for (const auto& link : *links) {
+      if (parent[link.first] < 0 || parent[link.second] < 0) continue;
+      const Index a = find_root(parent, link.first);
+      const Index b = find_root(parent, link.second);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
   }
   std::vector<std::vector<Index>> group_of_root(loop_count);
   for (const Index k : eligible) group_of_root[find_root(parent, k)].push_back(k);
@@ -48,8 +50,8 @@ std::vector<std::vector<Index>> agreeing_groups(const MutualSupport& support,
 
 std::vector<Index> strongest_clusters(const MutualSupport& support,
                                       const std::vector<Index>& eligible,
-                                      const std::vector<double>& log_odds, double alike_fraction,
-                                      double required_odds) {
+                                      const std::vector<double>& log_odds,
+                                      const Agreement& agreement, double required_odds) {
   std::vector<Index> parent(log_odds.size(), -1);
   std::vector<double> best(log_odds.size(), 0.0);
   std::vector<double> added(log_odds.size(), 0.0);
@@ -57,15 +59,20 @@ std::vector<Index> strongest_clusters(const MutualSupport& support,
     parent[k] = k;
     best[k] = log_odds[k];
   }
-  const double cap = -std::log(alike_fraction);
-  for (const auto& link : support.agreeing) {
-    if (parent[link.first] < 0 || parent[link.second] < 0) continue;
+  const auto join = [&](const Support& link, double gain) {
+    if (parent[link.first] < 0 || parent[link.second] < 0) return;
     const Index a = find_root(parent, link.first);
     const Index b = find_root(parent, link.second);
-    if (a == b || link.gain <= 0.0) continue;
+    if (a == b) return;
     parent[b] = a;
     best[a] = std::max(best[a], best[b]);
-    added[a] += added[b] + std::min(link.gain, cap);
+    added[a] += added[b] + gain;
+  };
+  // Copies first: what agrees with one of them agrees with all, which counts once.
+  for (const auto& link : support.copied) join(link, 0.0);
+  const double cap = -std::log(agreement.alike_fraction);
+  for (const auto& link : support.agreeing) {
+    if (link.gain > 0.0 && link.chi2 <= agreement.most_chi2) join(link, std::min(link.gain, cap));
   }
   double strongest = required_odds;
   for (const Index k : eligible) {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "agreement.hpp"
 #include "mutual_support.hpp"
 
 namespace isotherm::slam::detail {
@@ -22,12 +23,13 @@ std::vector<std::vector<Index>> agreeing_groups(const MutualSupport& support,
 /// The strongest groups of loops that confirm each other, among the `eligible` ones.
 ///
 /// A group's score is what the graph says about its best member, plus what agreement
-/// adds: at most the odds against a false loop agreeing with its false neighbour,
-/// `alike_fraction` being the fraction of those that do. Groups below `required_odds`
-/// are left, and those well below the strongest, which are better judged afterwards.
+/// adds: at most the odds against a false loop agreeing with its false neighbour, as
+/// `agreement` says, and nothing if true ones agree better, or by repeating a measurement.
+/// Groups below `required_odds` are left, and those well below the strongest, which are
+/// better judged afterwards.
 std::vector<Index> strongest_clusters(const MutualSupport& support,
                                       const std::vector<Index>& eligible,
-                                      const std::vector<double>& log_odds, double alike_fraction,
-                                      double required_odds);
+                                      const std::vector<double>& log_odds,
+                                      const Agreement& agreement, double required_odds);
 
 }  // namespace isotherm::slam::detail

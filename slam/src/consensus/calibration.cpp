@@ -16,7 +16,6 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kMargin = 5.0;         // over what short cycles say of odometry
 constexpr double kDriftMargin = 10.0;   // the same, with room for drift
 constexpr double kLeeway = 5.0;         // above that, where they find it better than stated
-constexpr double kSame = 1e-9;          // of two measurements
 constexpr double kLargestChange = 2.0;  // of a factor, in one step
 constexpr double kWorthRescaling = 1.1;
 constexpr int kSteps = 6;  // of Gauss-Newton
@@ -24,13 +23,6 @@ constexpr int kSteps = 6;  // of Gauss-Newton
 double moved(double present, double wanted, double least, double most) {
   const double near = std::clamp(wanted, present / kLargestChange, present * kLargestChange);
   return std::clamp(near, least, most);
-}
-
-// A loop that repeats the measurement of another says nothing of how accurate either is;
-// unless both say that the robot is back where it was, which simulators like to do.
-template <class Pose>
-bool is_copy(const Link<Pose>& a, const Link<Pose>& b) {
-  return (a.T_a_b.inverse() * b.T_a_b).log().norm() < kSame && a.T_a_b.log().norm() >= kSame;
 }
 
 bool differ(double a, double b) { return std::abs(std::log(a / b)) >= std::log(kWorthRescaling); }

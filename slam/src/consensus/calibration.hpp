@@ -26,6 +26,9 @@ class Calibration {
   /// The factors on what the file states.
   CovarianceScale scale() const { return {scale_.odometry, scale_.loops * tightened_}; }
 
+  /// Whether short cycles show the errors to be smaller than the file states.
+  bool overstated() const noexcept { return least_odometry_ < 1.0; }
+
   /// Mean chi-squared a degree of freedom of the accepted loops where their covariances
   /// are only widened, as last learnt; 1 before. Below 1 where the file understates how
   /// accurate they are.

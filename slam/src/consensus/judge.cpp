@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "crowded_gate.hpp"
 #include "isotherm/base/statistics.hpp"
 #include "prediction.hpp"
 
@@ -11,6 +12,14 @@ namespace {
 // However heavy the tails of real errors, an accepted loop is dropped beyond twice the
 // deviations that an average one would need to meet the gate.
 constexpr double kMostTailFactor = 4.0;
+// Where false loops crowd around the gate, correct ones may be pruned with so many times
+// the probability, but at most with this one.
+constexpr double kCrowded = 25.0;
+constexpr double kMostLost = 0.01;
+
+double lost_where_crowded(double significance) {
+  return std::max(significance, std::min(kCrowded * significance, kMostLost));
+}
 
 }  // namespace
 
@@ -24,8 +33,11 @@ Judge<Pose>::Judge(const ReducedGraph<Pose>& graph, const Estimate<Pose>& estima
       map_(map),
       accepted_(accepted),
       significance_(significance),
-      gate_(chi_squared_quantile(1.0 - significance, Pose::kDof)),
-      tail_{gate_, kMostTailFactor},
+      widest_gate_(chi_squared_quantile(1.0 - significance, Pose::kDof)),
+      narrowest_refuting_gate_(
+          chi_squared_quantile(1.0 - lost_where_crowded(significance), Pose::kDof)),
+      gate_(widest_gate_),
+      tail_{widest_gate_, kMostTailFactor},
       standings_(graph.loops.size()) {}
 
 template <class Pose>
@@ -34,8 +46,13 @@ double Judge<Pose>::tail_factor() const {
 }
 
 template <class Pose>
+double Judge<Pose>::refuting_gate() const {
+  return gate_ < widest_gate_ ? std::max(gate_, narrowest_refuting_gate_) : widest_gate_;
+}
+
+template <class Pose>
 double Judge<Pose>::drop_gate() const {
-  return gate_ * std::max(1.0, tail_factor() * calibration_.loop_level());
+  return std::max(gate_, widest_gate_ * tail_factor() * calibration_.loop_level());
 }
 
 template <class Pose>
@@ -65,7 +82,7 @@ void Judge<Pose>::assess() {
     auto& standing = standings_[k];
     standing.connected = estimate_.connected(graph_.loops[k]);
     standing.evidence = standing.connected ? weigh(loop) : Evidence();
-    if (standing.connected && inside_gate(loop)) unclear.push_back(loop);
+    if (standing.connected && !refuted(loop)) unclear.push_back(loop);
   }
   weigh_afresh(unclear);
 }
@@ -92,6 +109,7 @@ typename Judge<Pose>::Selection Judge<Pose>::inconsistent() {
   const double before = drop_gate();
   Selection doubtful = misfits();
   learn_tail();
+  learn_gate();
   if (drop_gate() < before) doubtful = misfits();
   double worst = 0.0;
   for (const Index k : doubtful) worst = std::max(worst, evidence(k).chi2);
@@ -130,8 +148,20 @@ void Judge<Pose>::learn_tail() {
   for (std::size_t k = 0; k < standings_.size(); ++k) {
     if (accepted_[k]) chi2.push_back(standings_[k].evidence.chi2);
   }
-  tail_ =
-      chi2.empty() ? Tail{gate_, kMostTailFactor} : student_tail(chi2, Pose::kDof, significance_);
+  tail_ = chi2.empty() ? Tail{widest_gate_, kMostTailFactor}
+                       : student_tail(chi2, Pose::kDof, significance_);
+}
+
+template <class Pose>
+void Judge<Pose>::learn_gate() {
+  gate_ = widest_gate_;
+  // Only there do the correct loops end well before the gate.
+  if (!calibration_.overstated()) return;
+  std::vector<double> chi2;
+  for (const auto& standing : standings_) {
+    if (standing.connected) chi2.push_back(standing.evidence.chi2);
+  }
+  gate_ = crowded_gate(std::move(chi2), widest_gate_);
 }
 
 template <class Pose>

@@ -36,7 +36,16 @@ class Judge {
         const Calibration<Pose>& calibration, const MapVolume<Pose>& map,
         const std::vector<bool>& accepted, double significance);
 
+  /// Beyond it a correct loop lies with the probability `significance`.
+  double widest_gate() const noexcept { return widest_gate_; }
+
+  /// What a loop must meet to be accepted: narrower where false loops crowd around the
+  /// widest gate.
   double gate() const noexcept { return gate_; }
+
+  /// Beyond it a loop that is not accepted is refuted. Between both gates it is in doubt:
+  /// few correct loops of Gaussian errors are beyond this one.
+  double refuting_gate() const;
 
   /// How many times farther out than for Gaussian errors the accepted loops may lie.
   double tail_factor() const;
@@ -48,7 +57,9 @@ class Judge {
   const Evidence& evidence(Index loop) const { return standings_[loop].evidence; }
   bool connected(Index loop) const { return standings_[loop].connected; }
   bool inside_gate(Index loop) const { return evidence(loop).chi2 <= gate_; }
-  bool refuted(Index loop) const { return !accepted_[loop] && !inside_gate(loop); }
+  bool refuted(Index loop) const {
+    return !accepted_[loop] && evidence(loop).chi2 > refuting_gate();
+  }
 
   /// Prior and evidence of a loop; of all.
   double log_odds(Index loop, const Evidence& evidence) const;
@@ -66,7 +77,7 @@ class Judge {
 
   /// Of the accepted loops, as a share of the gate, at most 1: where it is below, loops
   /// are more accurate than stated, heavy tails included.
-  double tail_share() const { return std::min(1.0, tail_.quantile / gate_); }
+  double tail_share() const { return std::min(1.0, tail_.quantile / widest_gate_); }
 
   /// The accepted loops that disagree most with the others; none if all agree.
   Selection inconsistent();
@@ -91,6 +102,7 @@ class Judge {
   Evidence weigh(Index loop) const;
   Selection misfits();
   void learn_tail();
+  void learn_gate();
 
   const ReducedGraph<Pose>& graph_;
   const Estimate<Pose>& estimate_;
@@ -98,6 +110,8 @@ class Judge {
   const MapVolume<Pose>& map_;
   const std::vector<bool>& accepted_;
   double significance_;
+  double widest_gate_;
+  double narrowest_refuting_gate_;  // where false loops crowd
   double gate_;
   Tail tail_;
   std::vector<Standing> standings_;

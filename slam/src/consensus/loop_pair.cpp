@@ -3,6 +3,8 @@
 namespace isotherm::slam::detail {
 namespace {
 
+constexpr double kSame = 1e-9;  // of two measurements
+
 template <class Pose>
 UncertainPose<Pose> along(const ReducedGraph<Pose>& graph, const CovarianceScale& scale, Index from,
                           Index to) {
@@ -29,6 +31,11 @@ std::vector<ForwardLoop<Pose>> forward_loops(const ReducedGraph<Pose>& graph,
     }
   }
   return loops;
+}
+
+template <class Pose>
+bool is_copy(const Link<Pose>& a, const Link<Pose>& b) {
+  return (a.T_a_b.inverse() * b.T_a_b).log().norm() < kSame && a.T_a_b.log().norm() >= kSame;
 }
 
 template <class Pose>
@@ -60,6 +67,8 @@ template std::vector<ForwardLoop<Pose2>> forward_loops(const ReducedGraph<Pose2>
                                                        const CovarianceScale&);
 template std::vector<ForwardLoop<Pose3>> forward_loops(const ReducedGraph<Pose3>&,
                                                        const CovarianceScale&);
+template bool is_copy(const Link<Pose2>&, const Link<Pose2>&);
+template bool is_copy(const Link<Pose3>&, const Link<Pose3>&);
 template Evidence compare(const ReducedGraph<Pose2>&, const CovarianceScale&,
                           const ForwardLoop<Pose2>&, const ForwardLoop<Pose2>&,
                           const MapVolume<Pose2>&);

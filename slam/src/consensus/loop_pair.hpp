@@ -22,6 +22,12 @@ template <class Pose>
 std::vector<ForwardLoop<Pose>> forward_loops(const ReducedGraph<Pose>& graph,
                                              const CovarianceScale& scale);
 
+/// Whether one loop repeats the measurement of the other. No two measurements are the same
+/// to the last digit: a copy vouches for nothing, and says nothing of how accurate either
+/// is. Only that the robot is back where it was is said the same way by each.
+template <class Pose>
+bool is_copy(const Link<Pose>& a, const Link<Pose>& b);
+
 /// How `measured` compares with what `known` and the two pieces of odometry between
 /// their ends predict. The prediction does not depend on the estimate, nor on how far
 /// odometry has drifted between the two ends of the loops. Both must run between the

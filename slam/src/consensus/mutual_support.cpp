@@ -12,8 +12,14 @@ MutualSupport mutual_support(const ReducedGraph<Pose>& graph,
   const auto evidence = compare_pairs(graph, pairs, map, scale);
   MutualSupport support;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    auto& kind = evidence[k].chi2 <= gate ? support.agreeing : support.contradicting;
-    kind.push_back({pairs[k].first, pairs[k].second, evidence[k].log_ratio});
+    const auto [first, second] = pairs[k];
+    const bool agree = evidence[k].chi2 <= gate;
+    const Support pair{first, second, evidence[k].log_ratio, evidence[k].chi2};
+    if (!is_copy(graph.loops[first], graph.loops[second])) {
+      (agree ? support.agreeing : support.contradicting).push_back(pair);
+    } else if (agree) {
+      support.copied.push_back(pair);
+    }
   }
   std::stable_sort(support.agreeing.begin(), support.agreeing.end(),
                    [](const Support& a, const Support& b) { return a.gain > b.gain; });

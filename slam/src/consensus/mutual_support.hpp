@@ -14,12 +14,16 @@ struct Support {
   /// Log density of one loop's measurement as the other predicts it, relative to
   /// "anywhere on the map".
   double gain = 0.0;
+  double chi2 = 0.0;  ///< of the same
 };
 
 /// How loops with neighbouring ends agree with each other.
 struct MutualSupport {
   std::vector<Support> agreeing;       ///< by descending gain
   std::vector<Support> contradicting;  ///< chi-squared outside the gate
+  /// Those that agree, but of which one repeats the measurement of the other (is_copy):
+  /// that is no confirmation, nor is it news if they contradict each other.
+  std::vector<Support> copied;
 };
 
 /// Compares the loops of each of `pairs` (near_pairs).

@@ -188,7 +188,7 @@ bool Search<Pose>::few_parts() const {
 template <class Pose>
 typename Search<Pose>::Batch Search<Pose>::clusters_of(const Selection& eligible,
                                                        const std::vector<double>& odds) const {
-  return {"cluster", strongest_clusters(support_, eligible, odds, alike_fraction_, required_odds_)};
+  return {"cluster", strongest_clusters(support_, eligible, odds, agreement_, required_odds_)};
 }
 
 // Short loops between parts that nothing joins: broken odometry. They have no evidence
@@ -234,14 +234,15 @@ template <class Pose>
 void Search<Pose>::learn_from_decided() {
   judge_.learn_prior();
 
-  // A Beta posterior from the pairs of which both are refuted.
-  const auto both_refuted = [this](const Support& pair) {
-    return judge_.refuted(pair.first) && judge_.refuted(pair.second);
-  };
-  const auto alike = static_cast<double>(std::ranges::count_if(support_.agreeing, both_refuted));
-  const auto unlike =
-      static_cast<double>(std::ranges::count_if(support_.contradicting, both_refuted));
-  alike_fraction_ = (alike + 1.0) / (alike + unlike + 5.0);
+  std::vector<double> of_accepted;
+  std::vector<double> of_refuted;
+  for (const auto* pairs : {&support_.agreeing, &support_.contradicting}) {
+    for (const auto& [first, second, gain, chi2] : *pairs) {
+      if (accepted_[first] && accepted_[second]) of_accepted.push_back(chi2);
+      if (judge_.refuted(first) && judge_.refuted(second)) of_refuted.push_back(chi2);
+    }
+  }
+  agreement_ = learn_agreement(std::move(of_accepted), of_refuted, judge_.widest_gate());
 }
 
 template <class Pose>
@@ -259,7 +260,7 @@ template <class Pose>
 void Search<Pose>::judge_anew() {
   for (auto& record : records_) record.drops = 0;
   judge_.forget_bounds();
-  support_ = mutual_support(graph_, near_pairs_, map_, calibration_.scale(), judge_.gate());
+  support_ = mutual_support(graph_, near_pairs_, map_, calibration_.scale(), judge_.widest_gate());
 }
 
 template <class Pose>
@@ -277,7 +278,7 @@ void Search<Pose>::report(ConsensusResult& result) const {
     const Evidence& evidence = judge_.evidence(loop);
     auto& verdict = result.verdicts[k];
     verdict.score = evidence.chi2;
-    verdict.threshold = accepted_[k] ? judge_.drop_gate() : judge_.gate();
+    verdict.threshold = accepted_[k] ? judge_.drop_gate() : judge_.refuting_gate();
     if (accepted_[k]) {
       verdict.stage = "round " + std::to_string(records_[k].round);
     } else if (judge_.refuted(loop)) {
@@ -295,7 +296,7 @@ void Search<Pose>::report(ConsensusResult& result) const {
     info.connected = judge_.connected(loop);
   }
   auto conflicts =
-      name_conflicts(graph_, map_, calibration_.scale(), judge_.gate(), accepted_, pruned);
+      name_conflicts(graph_, map_, calibration_.scale(), judge_.refuting_gate(), accepted_, pruned);
   for (std::size_t k = 0; k < accepted_.size(); ++k) {
     result.details[k].conflicts = std::move(conflicts[k]);
   }

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "agreement.hpp"
 #include "calibration.hpp"
 #include "estimate.hpp"
 #include "isotherm/slam/consensus.hpp"
@@ -86,8 +87,8 @@ class Search {
   std::vector<bool> accepted_;
   Judge<Pose> judge_;
   std::vector<ConsensusRound> rounds_;
-  double alike_fraction_ = 0.2;  // of false loops that agree with a neighbouring false loop
-  bool take_likely_ = false;     // accept unproven loops that are more likely true than not
+  Agreement agreement_;
+  bool take_likely_ = false;  // accept unproven loops that are more likely true than not
   bool settled_ = true;
 };
 

@@ -232,6 +232,19 @@ TEST(Consensus, CopiedLoopsDoNotVouchForOdometry) {
 }
 
 // Odometry in pieces of ten poses, with edges that skip a pose where a step is missing.
+// All errors are a thirtieth of what the file states: true loops end well inside the gate,
+// and false ones between near poses begin there.
+TEST(Consensus, FalseLoopsThatCrowdAroundTheGateDoNotPass) {
+  auto city = simulate_city({.poses = 2000, .measurements = {.loops = 600}, .seed = 4});
+  for (auto& constraint : city.graph.constraints) constraint.information *= 1e-3;
+  const auto bad =
+      corrupt(city.graph, city.truth, {.type = NoiseType::local, .fraction = 0.5, .seed = 4});
+  const auto result = consensus(bad.graph, edge_roles(bad.graph));
+  const auto metrics = evaluate_loops(result.verdicts, bad.labels);
+  EXPECT_GE(metrics.precision(), 0.995);
+  EXPECT_GE(metrics.recall(), 0.995);
+}
+
 TEST(Consensus, JoinsBrokenOdometryByShortLoops) {
   Random random(42);
   auto city = simulate_city({.poses = 600, .measurements = {.loops = 200}, .seed = 4});

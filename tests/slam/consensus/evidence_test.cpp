@@ -81,6 +81,23 @@ TYPED_TEST(MutualSupportOf, NeighboursAgreeWhicheverWayTheyAreStated) {
   }
 }
 
+TYPED_TEST(MutualSupportOf, ALoopThatRepeatsAMeasurementIsACopy) {
+  using Pose = TypeParam;
+  Random random(23);
+  auto graph = this->two_passes(random);
+  auto copy = graph.constraints[graph.constraints.size() - 1];
+  graph.constraints.push_back(copy);
+  std::swap(copy.from, copy.to);
+  graph.constraints.push_back(copy);
+  const auto reduced = reduce(graph, edge_roles(graph));
+  const MapVolume<Pose> map(reduced.poses);
+  const auto support = mutual_support(reduced, near_pairs(reduced, 20), map, {}, 25.0);
+  ASSERT_EQ(support.copied.size(), 1u) << "the other one is wrong way round";
+  EXPECT_EQ(support.copied[0].first, 3);
+  EXPECT_EQ(support.copied[0].second, 4);
+  EXPECT_EQ(support.agreeing.size(), 9u) << "each of both with three, and those";
+}
+
 TYPED_TEST(MutualSupportOf, AFalseNeighbourContradictsAndADistantOneIsNotCompared) {
   using Pose = TypeParam;
   Random random(22);
