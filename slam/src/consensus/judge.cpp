@@ -47,7 +47,7 @@ double Judge<Pose>::tail_factor() const {
 
 template <class Pose>
 double Judge<Pose>::refuting_gate() const {
-  return gate_ < widest_gate_ ? std::max(gate_, narrowest_refuting_gate_) : widest_gate_;
+  return crowded() ? std::max(gate_, narrowest_refuting_gate_) : widest_gate_;
 }
 
 template <class Pose>

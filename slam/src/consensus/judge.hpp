@@ -43,6 +43,9 @@ class Judge {
   /// widest gate.
   double gate() const noexcept { return gate_; }
 
+  /// Whether false loops crowd there.
+  bool crowded() const noexcept { return gate_ < widest_gate_; }
+
   /// Beyond it a loop that is not accepted is refuted. Between both gates it is in doubt:
   /// few correct loops of Gaussian errors are beyond this one.
   double refuting_gate() const;

@@ -234,11 +234,12 @@ template <class Pose>
 void Search<Pose>::learn_from_decided() {
   judge_.learn_prior();
 
+  // True loops need not agree better than the gate asks unless false ones crowd there.
   std::vector<double> of_accepted;
   std::vector<double> of_refuted;
   for (const auto* pairs : {&support_.agreeing, &support_.contradicting}) {
     for (const auto& [first, second, gain, chi2] : *pairs) {
-      if (accepted_[first] && accepted_[second]) of_accepted.push_back(chi2);
+      if (judge_.crowded() && accepted_[first] && accepted_[second]) of_accepted.push_back(chi2);
       if (judge_.refuted(first) && judge_.refuted(second)) of_refuted.push_back(chi2);
     }
   }
