@@ -3,7 +3,6 @@
 #include <numeric>
 #include <optional>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -85,8 +84,7 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
   // Those of the vertices, from their file, which may have more.
   Eigen::MatrixXd positions_of(const std::vector<std::uint64_t>& ids) const {
     const auto file = geometry::read_positions(positions);
-    std::unordered_map<std::string, Eigen::Index> column_of;
-    for (const auto& name : file.names) column_of.emplace(name, column_of.size());
+    const auto column_of = file.column_of();
     std::vector<Eigen::Index> columns;
     for (const auto id : ids) {
       const auto found = column_of.find(std::to_string(id));

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <memory>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include <fmt/format.h>
@@ -56,10 +55,7 @@ struct EvalPositions {
     if (estimated.dimension() != expected.dimension()) {
       throw InvalidArgument("truth", "has another number of coordinates than the estimate");
     }
-    std::unordered_map<std::string, Eigen::Index> column_of;
-    for (std::size_t k = 0; k < expected.names.size(); ++k) {
-      column_of.emplace(expected.names[k], static_cast<Eigen::Index>(k));
-    }
+    auto column_of = expected.column_of();
     if (!leave_out.empty()) {
       for (const auto& name : read_positions(leave_out).names) column_of.erase(name);
     }

@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <unordered_map>
 
 #include <fmt/format.h>
 
@@ -92,10 +91,7 @@ struct LocalizeVerb : OptionVerb<LocalizeOptions> {
     if (known.dimension() != network.dimension) {
       throw InvalidArgument("ground-truth", "has another number of coordinates than the network");
     }
-    std::unordered_map<std::string, Eigen::Index> column_of;
-    for (std::size_t k = 0; k < known.names.size(); ++k) {
-      column_of.emplace(known.names[k], static_cast<Eigen::Index>(k));
-    }
+    const auto column_of = known.column_of();
     Eigen::MatrixXd positions = Eigen::MatrixXd::Constant(network.dimension, network.node_count(),
                                                           std::numeric_limits<double>::quiet_NaN());
     for (Index v = 0; v < network.node_count(); ++v) {

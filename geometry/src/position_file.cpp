@@ -44,6 +44,14 @@ bool has_position(const CsvReader& csv, std::size_t status_column) {
 
 }  // namespace
 
+std::unordered_map<std::string, Eigen::Index> NamedPositions::column_of() const {
+  std::unordered_map<std::string, Eigen::Index> columns;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    columns.emplace(names[k], static_cast<Eigen::Index>(k));
+  }
+  return columns;
+}
+
 NamedPositions read_positions(const std::string& path) {
   CsvReader csv(path);
   const auto node = csv.column("node", 0);

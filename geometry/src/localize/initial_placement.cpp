@@ -162,8 +162,7 @@ class Start {
     unfold(problem_, trusted_, evidence_.absence, errors(), gate_, options_, map);
     refine_robustly(problem_, trusted_, gate_, options_, map);
     if (credit(map) < credit(best.all) + kTear * gate_) return best;
-    auto rival = finished(std::move(map));
-    return rival.credit > best.credit ? std::move(rival) : std::move(best);
+    return challenged(std::move(best), std::move(map));
   }
 
   // Of a candidate and the one that some parts make, that of which more is explained. Parts that
@@ -172,11 +171,16 @@ class Start {
     constexpr double kWorth = 0.5;
     auto map = together(std::move(parts));
     if (is_firm(best, kFair) && credit(map) < kWorth * credit(best.all)) return best;
+    return challenged(std::move(best), std::move(map));
+  }
+
+ private:
+  // Of a candidate and the one that a map makes, that of which more is explained.
+  Candidate challenged(Candidate best, Placement map) const {
     auto rival = finished(std::move(map));
     return rival.credit > best.credit ? std::move(rival) : std::move(best);
   }
 
- private:
   void examine(Candidate& candidate) const {
     candidate.firm = candidate.all;
     candidate.firm.placed = firm_nodes(problem_, trusted_, gate_, options_, candidate.all);

@@ -33,12 +33,12 @@ std::vector<FoldOutcome> gains(const RangeProblem& problem, const std::vector<bo
   return outcomes;
 }
 
-// Moves the nodes of those that have no node, and no neighbour of one, in common with those before.
 struct Taken {
   Index folds = 0;
   std::vector<Index> moved;
 };
 
+// Moves the nodes of those that have no node, and no neighbour of one, in common with those before.
 Taken take(const RangeProblem& problem, const std::vector<FoldOutcome>& outcomes,
            Placement& placement) {
   std::vector<bool> touched(problem.nodes, false);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <utility>
 
 #include "../find_root.hpp"
 
@@ -11,6 +13,16 @@ namespace {
 
 // Groups with this share of the strongest one's log odds are accepted with it.
 constexpr double kStrong = 0.7;
+
+// The roots of both ends of a link; those of one and the same group, and of loops that are
+// not eligible, are no two groups to join.
+std::optional<std::pair<Index, Index>> two_groups(std::vector<Index>& parent, const Support& link) {
+  if (parent[link.first] < 0 || parent[link.second] < 0) return std::nullopt;
+  const Index a = find_root(parent, link.first);
+  const Index b = find_root(parent, link.second);
+  if (a == b) return std::nullopt;
+  return std::pair(a, b);
+}
 
 }  // namespace
 
@@ -36,9 +48,9 @@ std::vector<std::vector<Index>> agreeing_groups(const MutualSupport& support,
   for (const Index k : eligible) parent[k] = k;
   for (const auto* links : {&support.copied, &support.agreeing}) {
     for (const auto& link : *links) {
-      if (parent[link.first] < 0 || parent[link.second] < 0) continue;
-      const Index a = find_root(parent, link.first);
-      const Index b = find_root(parent, link.second);
+      const auto roots = two_groups(parent, link);
+      if (!roots) continue;
+      const auto [a, b] = *roots;
       parent[std::max(a, b)] = std::min(a, b);
     }
   }
@@ -60,10 +72,9 @@ std::vector<Index> strongest_clusters(const MutualSupport& support,
     best[k] = log_odds[k];
   }
   const auto join = [&](const Support& link, double gain) {
-    if (parent[link.first] < 0 || parent[link.second] < 0) return;
-    const Index a = find_root(parent, link.first);
-    const Index b = find_root(parent, link.second);
-    if (a == b) return;
+    const auto roots = two_groups(parent, link);
+    if (!roots) return;
+    const auto [a, b] = *roots;
     parent[b] = a;
     best[a] = std::max(best[a], best[b]);
     added[a] += added[b] + gain;

@@ -11,21 +11,12 @@
 #include "isotherm/slam/consensus.hpp"
 #include "isotherm/slam/corrupt.hpp"
 #include "isotherm/slam/simulate.hpp"
+#include "slam/consensus/chi_squared_sample.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
 
-// Sums of squares of normals, times the scale.
-std::vector<double> chi_squared_sample(Random& random, int count, int dof, double scale) {
-  std::vector<double> sample(static_cast<std::size_t>(count), 0.0);
-  for (double& x : sample) {
-    for (int d = 0; d < dof; ++d) {
-      const double z = random.normal();
-      x += scale * z * z;
-    }
-  }
-  return sample;
-}
+using isotherm_test::chi_squared_sample;
 
 TEST(CycleScale, IsTheScaleOfASample) {
   Random random(51);

@@ -231,7 +231,6 @@ TEST(Consensus, CopiedLoopsDoNotVouchForOdometry) {
             static_cast<std::int64_t>(result.verdicts.size()));
 }
 
-// Odometry in pieces of ten poses, with edges that skip a pose where a step is missing.
 // All errors are a thirtieth of what the file states: true loops end well inside the gate,
 // and false ones between near poses begin there.
 TEST(Consensus, FalseLoopsThatCrowdAroundTheGateDoNotPass) {
@@ -245,6 +244,7 @@ TEST(Consensus, FalseLoopsThatCrowdAroundTheGateDoNotPass) {
   EXPECT_GE(metrics.recall(), 0.995);
 }
 
+// Odometry in pieces of ten poses, with edges that skip a pose where a step is missing.
 TEST(Consensus, JoinsBrokenOdometryByShortLoops) {
   Random random(42);
   auto city = simulate_city({.poses = 600, .measurements = {.loops = 200}, .seed = 4});

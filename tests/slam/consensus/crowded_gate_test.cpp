@@ -6,6 +6,7 @@
 
 #include "isotherm/base/random.hpp"
 #include "isotherm/base/statistics.hpp"
+#include "slam/consensus/chi_squared_sample.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -14,14 +15,7 @@ constexpr int kDof = 6;
 const double kGate = chi_squared_quantile(1.0 - 1e-4, kDof);
 
 std::vector<double> true_loops(Random& random, int count, double scale) {
-  std::vector<double> chi2(static_cast<std::size_t>(count), 0.0);
-  for (double& x : chi2) {
-    for (int d = 0; d < kDof; ++d) {
-      const double z = random.normal();
-      x += scale * z * z;
-    }
-  }
-  return chi2;
+  return isotherm_test::chi_squared_sample(random, count, kDof, scale);
 }
 
 void add_false_loops(Random& random, int count, double least, std::vector<double>& chi2) {

@@ -6,26 +6,18 @@
 
 #include "isotherm/base/random.hpp"
 #include "isotherm/base/statistics.hpp"
+#include "slam/consensus/chi_squared_sample.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
 
 constexpr double kTail = 1e-3;
 
-double chi_squared(Random& random, int dof) {
-  double sum = 0.0;
-  for (int d = 0; d < dof; ++d) {
-    const double z = random.normal();
-    sum += z * z;
-  }
-  return sum;
-}
+using isotherm_test::chi_squared;
 
 std::vector<double> gaussian_sample(int count, int dof, double scale) {
   Random random(61);
-  std::vector<double> sample(static_cast<std::size_t>(count));
-  for (double& x : sample) x = scale * chi_squared(random, dof);
-  return sample;
+  return isotherm_test::chi_squared_sample(random, count, dof, scale);
 }
 
 TEST(StudentTail, OfGaussianErrorsIsThatOfChiSquared) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include <Eigen/Core>
@@ -16,6 +17,9 @@ struct NamedPositions {
   Eigen::MatrixXd positions;  ///< dimension x names, metres
 
   int dimension() const { return static_cast<int>(positions.rows()); }
+
+  /// Which column of `positions` belongs to a name.
+  std::unordered_map<std::string, Eigen::Index> column_of() const;
 };
 
 /// Reads `node,x,y[,z]` rows, with or without column names; other columns are
