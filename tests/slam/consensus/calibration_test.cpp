@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -8,6 +9,7 @@
 #include "consensus/prior_by_span.hpp"
 #include "consensus/short_cycles.hpp"
 #include "isotherm/base/random.hpp"
+#include "isotherm/base/statistics.hpp"
 #include "isotherm/slam/consensus.hpp"
 #include "isotherm/slam/corrupt.hpp"
 #include "isotherm/slam/simulate.hpp"
@@ -28,13 +30,49 @@ TEST(CycleScale, IsTheScaleOfASample) {
   }
 }
 
+// False cycles next to the true ones, on a logarithmic scale.
 TEST(CycleScale, FalseCyclesMakeItLargerButNotByFar) {
   Random random(52);
-  auto sample = chi_squared_sample(random, 1000, 3, 0.01);
-  for (int k = 0; k < 2000; ++k) sample.push_back(random.uniform(10.0, 1000.0));
+  auto sample = chi_squared_sample(random, 1000, 3, 0.1);
+  for (int k = 0; k < 500; ++k) sample.push_back(std::exp(random.uniform(-1.0, 7.0)));
   const double found = cycle_scale(sample, 3);
-  EXPECT_GE(found, 0.01);
-  EXPECT_LE(found, 0.05);
+  EXPECT_GE(found, 0.1);
+  EXPECT_LE(found, 0.2);
+}
+
+TEST(CycleScale, IsThatOfAMinorityFarBelowAllOthers) {
+  Random random(54);
+  for (const int dof : {3, 6}) {
+    auto sample = chi_squared_sample(random, 1000, dof, 1e-3);
+    const auto far = chi_squared_sample(random, 30000, dof, 100.0);
+    sample.insert(sample.end(), far.begin(), far.end());
+    EXPECT_NEAR(cycle_scale(sample, dof) / 1e-3, 1.0, 0.15) << dof;
+  }
+}
+
+// Too few to be told from chance: the answer is that of all.
+TEST(CycleScale, IsNotThatOfAHandfulBelowAllOthers) {
+  Random random(55);
+  auto sample = chi_squared_sample(random, 30, 3, 1e-3);
+  const auto far = chi_squared_sample(random, 3000, 3, 100.0);
+  sample.insert(sample.end(), far.begin(), far.end());
+  EXPECT_NEAR(cycle_scale(sample, 3) / 100.0, 1.0, 0.15);
+}
+
+// Of one crowd without end nothing is left out.
+TEST(CycleScale, IsTheLowQuantileOfABroadCrowd) {
+  Random random(56);
+  std::vector<double> sample;
+  for (int k = 0; k < 20000; ++k) sample.push_back(std::exp(random.uniform(-5.0, 5.0)));
+  const double expected = std::exp(-3.0) / chi_squared_quantile(0.2, 3);
+  EXPECT_NEAR(cycle_scale(sample, 3) / expected, 1.0, 0.1);
+}
+
+TEST(CycleScale, LeavesOutCyclesBeyondAllNumbers) {
+  Random random(57);
+  auto sample = chi_squared_sample(random, 1000, 3, 1.0);
+  sample.insert(sample.end(), 50, std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(cycle_scale(sample, 3), 1.0, 0.15);
 }
 
 TEST(CycleScale, SaysNothingOfAFewCycles) {
