@@ -126,6 +126,15 @@ def area_under_curve(scores, labels):
     return wins / (count * (len(false) - count))
 
 
+def precision_and_recall(verdict, labels, near_ones=False):
+    """Share of false edges among the pruned ones, and of pruned ones among the false; those to be
+    ignored count as false ones, or not at all."""
+    judged = (labels < 2) | near_ones
+    pruned, false = judged & (verdict == "prune"), judged & (labels > 0)
+    right = (pruned & false).sum()
+    return right / max(1, pruned.sum()), right / max(1, false.sum())
+
+
 class Bench:
     def __init__(self, command, folder):
         self.command, self.folder = command, folder
@@ -159,15 +168,14 @@ class Bench:
         edges, labels = add_false_edges(graph, share, rng)
         flags = ["--positions", self.write_positions(graph[1])] if method == "rank" else []
         verdict, score, seconds, _ = self.judge(edges, method, flags)
-        pruned, true, false = verdict == "prune", labels == 0, labels == 1
-        right, wrong = (pruned & false).sum(), (pruned & true).sum()
+        true, false = labels == 0, labels == 1
         areas = [area_under_curve(score, labels)]
         for baseline in BASELINES:
             known = share > 0 and (baseline != "resistance" or len(labels) < MOST_FOR_RESISTANCE)
             other = self.judge(edges, baseline)[1] if known else None
             areas.append(area_under_curve(other, labels) if known else float("nan"))
-        return [true.sum(), false.sum(), right / max(1, right + wrong),
-                right / max(1, false.sum()), wrong / true.sum(), seconds, *areas]
+        return [true.sum(), false.sum(), *precision_and_recall(verdict, labels),
+                (verdict[true] == "prune").mean(), seconds, *areas]
 
     def print_with_near_ones(self, data, shares=(0.01, 0.05), repeats=5):
         """Precision and recall on roads of known positions, no shortcut being ignored."""
@@ -178,9 +186,7 @@ class Bench:
                 edges, labels = add_false_edges(graph, share, rng)
                 positions = self.write_positions(graph[1])
                 verdict = self.judge(edges, "rank", ["--positions", positions])[0]
-                pruned, false = verdict == "prune", labels > 0
-                right = (pruned & false).sum()
-                found.append([right / pruned.sum(), right / false.sum()])
+                found.append(precision_and_recall(verdict, labels, near_ones=True))
             precision, recall = np.mean(found, axis=0)
             print(f"{100 * share:g} % shortcuts, positions known, short ones too: "
                   f"precision {precision:.4f}, recall {recall:.4f}")
@@ -205,10 +211,9 @@ class Bench:
         edges, labels = add_false_edges(graph, 0.1, rng)
         edges, labels = edges[:1_000_000], labels[:1_000_000]
         verdict, _, seconds, megabytes = self.judge(edges, "heat")
-        pruned = verdict == "prune"
+        precision, recall = precision_and_recall(verdict, labels)
         print(f"\n{len(edges)} edges: {seconds:.0f} s, {megabytes:.0f} MB, "
-              f"precision {(pruned & (labels == 1)).sum() / (pruned & (labels < 2)).sum():.4f}, "
-              f"recall {pruned[labels == 1].mean():.4f}")
+              f"precision {precision:.4f}, recall {recall:.4f}")
 
 
 def main():

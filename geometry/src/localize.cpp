@@ -56,10 +56,14 @@ class Localization {
     return detail::ranges_within(problem_, placement_, std::numeric_limits<double>::infinity());
   }
 
+  // Beyond a millionth of chi-squared it is only single nodes that creep along the arcs of very
+  // short ranges.
   void fit() {
-    const auto outcome =
-        detail::refine(problem_, use_, placement_,
-                       {.max_iterations = options_.max_iterations, .progress = options_.progress});
+    constexpr double kStill = 1e-6;
+    const auto outcome = detail::refine(problem_, use_, placement_,
+                                        {.max_iterations = options_.max_iterations,
+                                         .still = kStill,
+                                         .progress = options_.progress});
     result_.iterations += outcome.iterations;
     converged_ = outcome.converged;
   }
@@ -68,6 +72,7 @@ class Localization {
   // the kept ranges stay the same.
   void decide() {
     constexpr int kMostRounds = 10;
+    std::vector<bool> returned(use_.size(), false);
     for (int round = 0; round < kMostRounds; ++round) {
       ++result_.rounds;
       fit();
@@ -76,9 +81,11 @@ class Localization {
       bool changed = false;
       for (std::size_t k = 0; k < use_.size(); ++k) {
         const bool keep = checks_[k].checked && (keeps_untested(k) || fits(k));
-        // Late rounds only remove, so that they end.
-        if (keep == use_[k] || (keep && round > kMostRounds / 2)) continue;
+        // Late rounds only remove, so that they end, and a range comes back once: some fit only
+        // as long as they are left out.
+        if (keep == use_[k] || (keep && (returned[k] || round > kMostRounds / 2))) continue;
         use_[k] = keep;
+        returned[k] = returned[k] || keep;
         changed = true;
       }
       if (!changed && !noise_changed) return;

@@ -21,6 +21,7 @@ namespace isotherm::geometry::detail {
 namespace {
 
 constexpr double kFair = 0.5;   // of the nodes, that are firm in a map which is right as a whole
+constexpr Index kBody = 500;    // and firm nodes that are no accident, however large the rest
 constexpr double kGood = 0.95;  // and in one that needs no rival, if these trusted pairs fit:
 constexpr double kFitting = 0.9;
 constexpr double kWhole = 0.995;  // and in one that has no tear
@@ -147,10 +148,12 @@ class Start {
     return best;
   }
 
-  // From a placement of some nodes. Where most of them are wrong there is nothing to mend.
+  // From a placement of some nodes. Where most of them are wrong, and no large part is right,
+  // there is nothing to mend.
   Candidate finished(Placement placement) const {
     auto result = opened(candidate(std::move(placement)));
-    return is_firm(result, kFair) ? repair(std::move(result)) : result;
+    const bool has_body = is_firm(result, kFair) || placed_count(result.firm) >= kBody;
+    return has_body ? repair(std::move(result)) : result;
   }
 
   // A large part that hangs on few nodes may have turned, and what lay between it and the rest lost
