@@ -202,12 +202,9 @@ class Growth {
 
   void settle() {
     constexpr int kIterations = 8;
-    constexpr double kReach = 4.0;  // widths beyond which a range has no say
-    auto use = ranges_within(problem_, placement_, kReach * kReach * gate_);
-    for (std::size_t k = 0; k < use.size(); ++k) use[k] = use[k] && trusted_[problem_.pair_of[k]];
-    refine(
-        problem_, use, placement_,
-        {.width = std::sqrt(gate_), .max_iterations = kIterations, .progress = options_.progress});
+    const double width = std::sqrt(gate_);
+    refine(problem_, ranges_in_reach(problem_, trusted_, placement_, width), placement_,
+           {.width = width, .max_iterations = kIterations, .progress = options_.progress});
     drop_contradicted();
     crowd_.rebuild(placement_);
     settled_size_ = size_;
