@@ -9,6 +9,10 @@ bool next_content_line(TextReader& text) {
   return false;
 }
 
+void require_other_end(TextReader& text, const RangeMeasurement& range) {
+  if (range.from == range.to) text.fail("expected another node than the first");
+}
+
 double distance_field(TextReader& text) {
   const double distance = text.number("a distance");
   if (distance < 0.0) text.fail("expected a distance >= 0");

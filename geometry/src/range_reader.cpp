@@ -83,6 +83,7 @@ class PyfgReader {
     measurement.timestamp = text_.number("a time stamp");
     measurement.from = builder_.node(text_.word("the name of the first node"));
     measurement.to = builder_.node(text_.word("the name of the second node"));
+    require_other_end(text_, measurement);
     measurement.distance = distance_field(text_);
     measurement.variance = variance_field(text_);
     measurement.line = text_.line_number();
@@ -135,6 +136,7 @@ RangeNetwork read_csv(TextReader& text, ReadReport& report) {
     RangeMeasurement measurement;
     measurement.from = builder.node(csv.text(from, "the first node"));
     measurement.to = builder.node(csv.text(to, "the second node"));
+    if (measurement.from == measurement.to) csv.fail(to, "expected another node than the first");
     measurement.distance = csv.number(range, "a distance");
     if (measurement.distance < 0.0) csv.fail(range, "expected a distance >= 0");
     if (named_sigma || (!csv.has_header() && csv.field_count() > 3)) {

@@ -38,6 +38,7 @@ void read_interval(Rows& rows) {
   RangeMeasurement measurement;
   measurement.from = rows.builder.node(node_field(text, "the first node"));
   measurement.to = rows.builder.node(node_field(text, "the second node"));
+  require_other_end(text, measurement);
   const double lower = distance_field(text);
   const double upper = distance_field(text);
   if (upper < lower) text.fail("expected an upper bound not below the lower one");
@@ -73,6 +74,7 @@ void read_flight_time(Rows& rows) {
   measurement.distance = kMetresPerMicrosecond * microseconds;
   measurement.from = rows.builder.node(node_field(text, "the first node"));
   measurement.to = rows.builder.node(node_field(text, "the second node"));
+  require_other_end(text, measurement);
   while (!text.at_line_end()) text.number("a radio diagnostic");
   measurement.line = text.line_number();
   if (microseconds >= 0.0) {

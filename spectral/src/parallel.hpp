@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <string_view>
@@ -26,7 +27,6 @@ void parallel_for(std::int64_t count, std::size_t grain, int threads,
                   MakeWorkspace make_workspace, Body body) {
   namespace tbb = oneapi::tbb;
   using Range = tbb::blocked_range<std::int64_t>;
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   const auto caller = std::this_thread::get_id();
   std::atomic<std::int64_t> done = 0;
   std::atomic<bool> cancelled = false;
@@ -43,7 +43,16 @@ void parallel_for(std::int64_t count, std::size_t grain, int threads,
       if (!progress({stage, finished, static_cast<std::uint64_t>(count)})) cancelled = true;
     }
   };
-  arena.execute([&] { tbb::parallel_for(Range(0, count, grain), run, tbb::simple_partitioner()); });
+  if (threads == 1 || count <= 1) {  // without the cost of an arena
+    const auto step = static_cast<std::int64_t>(grain);
+    for (std::int64_t begin = 0; begin < count && !cancelled; begin += step) {
+      run(Range(begin, std::min(begin + step, count)));
+    }
+  } else {
+    tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+    arena.execute(
+        [&] { tbb::parallel_for(Range(0, count, grain), run, tbb::simple_partitioner()); });
+  }
   if (cancelled) throw Cancelled();
 }
 

@@ -81,8 +81,8 @@ TEST_F(NetworkVerbs, BadInput) {
   EXPECT_EQ(run("localize ranges.csv -o out.csv").code, 3);
   write_text(folder / "ranges.csv", "from,to,range\na,b,1\nb,b,2\n");
   const auto self = run("localize ranges.csv -o out.csv");
-  EXPECT_EQ(self.code, 2);
-  EXPECT_THAT(self.err, HasSubstr("joins b to itself"));
+  EXPECT_EQ(self.code, 3);
+  EXPECT_THAT(self.err, HasSubstr("ranges.csv:3:3: expected another node than the first"));
   EXPECT_FALSE(std::filesystem::exists(folder / "out.csv"));
 
   write_text(folder / "ranges.csv", "from,to,range\na,b,1\nb,c,2\na,c,1.5\n");

@@ -109,6 +109,11 @@ TEST(ReadRanges, LocatesErrors) {
   EXPECT_EQ(error_of(""), "f: no range" + expected);
   EXPECT_EQ(error_of("VERTEX_XY L0 1 2\n"), "f: no range" + expected);
   EXPECT_EQ(error_of("EDGE_RANGE 1 A0 L0 -1 1\n"), "f:1:20: expected a distance >= 0 (got '-1')");
+  EXPECT_EQ(error_of("EDGE_RANGE 1 A0 A0 1 1\n"),
+            "f:1:17: expected another node than the first (got 'A0')");
+  EXPECT_EQ(error_of("from,to,range\na,b,1\nb,b,1\n"),
+            "f:3:3: expected another node than the first (got 'b')");
+  EXPECT_EQ(error_of("1 1 3 4\n"), "f:1:3: expected another node than the first (got '1')");
   EXPECT_EQ(error_of("EDGE_RANGE 1 A0 L0 1\n"),
             "f:1:21: expected a variance, found the end of the line");
   EXPECT_EQ(error_of("VERTEX_XY L0 1 2\nVERTEX_XYZ L1 1 2 3\n"),

@@ -276,6 +276,7 @@ class Firmness {
   // so on; not those that are `bound`. All of them.
   Nodes spread(Placement& firm, Nodes fresh, const Limits& limits,
                const std::vector<bool>& bound) const {
+    constexpr std::size_t kFew = 32;  // not worth waking other threads for
     Nodes all = fresh;
     while (!fresh.empty()) {
       Nodes near;
@@ -288,10 +289,10 @@ class Firmness {
       std::sort(near.begin(), near.end());
       near.erase(std::unique(near.begin(), near.end()), near.end());
       std::vector<char> has_one(near.size(), 0);
-      parallel_for(static_cast<std::int64_t>(near.size()), options_.threads, options_.progress,
-                   "determinacy", [&](std::int64_t k) {
-                     has_one[k] = has_one_place(firm, near[k], limits) ? 1 : 0;
-                   });
+      const int threads = near.size() < kFew ? 1 : options_.threads;
+      parallel_for(
+          static_cast<std::int64_t>(near.size()), threads, options_.progress, "determinacy",
+          [&](std::int64_t k) { has_one[k] = has_one_place(firm, near[k], limits) ? 1 : 0; });
       fresh.clear();
       for (std::size_t k = 0; k < near.size(); ++k) {
         if (has_one[k] != 0) fresh.push_back(near[k]);
