@@ -8,6 +8,7 @@
 #include "console.hpp"
 #include "help_formatter.hpp"
 #include "isotherm/base/error.hpp"
+#include "serial_openmp.hpp"
 #include "verbs.hpp"
 
 namespace isotherm::apps {
@@ -59,6 +60,7 @@ int run(int argc, char** argv) {
   }
 
   stop_cleanly_on_interrupt();
+  keep_openmp_serial();
   for (const auto& verb : verbs) {
     if (verb.parser->parsed()) return run_guarded(verb);
   }
