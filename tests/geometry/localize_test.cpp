@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -11,7 +12,9 @@
 
 #include "isotherm/base/error.hpp"
 #include "isotherm/geometry/point_alignment.hpp"
+#include "isotherm/geometry/range_file.hpp"
 #include "isotherm/geometry/simulate_network.hpp"
+#include "isotherm_test/data.hpp"
 #include "localize/networks.hpp"
 
 namespace isotherm::geometry {
@@ -313,6 +316,28 @@ TEST(Localize, RejectsBadNetworks) {
   EXPECT_THAT(message_for([](auto& n) { n.landmarks = {99}; }), HasSubstr("landmarks"));
   EXPECT_THROW(localize(good, {.significance = 0.0}), InvalidArgument);
   EXPECT_THROW(localize(good, {.patch_size = 2}), InvalidArgument);
+}
+
+// A few beacons among hundreds of known places, of which each hears one.
+TEST(Localize, FindsBeaconsHeardByARobot) {
+  ISOTHERM_REAL_DATA_OR_SKIP(path, "snl/plaza1/plaza1.pyfg");
+  auto network = read_ranges(path.string()).network;
+  const auto truth = network.positions;
+  const auto beacons = network.landmarks;
+  network.landmarks.clear();
+  constexpr std::size_t kStride = 4;  // for a short test
+  std::vector<RangeMeasurement> some;
+  for (std::size_t k = 0; k < network.ranges.size(); k += kStride) {
+    some.push_back(network.ranges[k]);
+    network.landmarks.push_back(some.back().from);
+  }
+  network.ranges = std::move(some);
+  const auto result = localize(network);
+  ASSERT_EQ(beacons.size(), 4u);
+  for (const Index v : beacons) {
+    EXPECT_EQ(result.nodes[v], NodeStatus::localised);
+    EXPECT_LT((result.positions.col(v) - truth.col(v)).norm(), 0.2);  // metres
+  }
 }
 
 TEST(Localize, CanBeCancelled) {

@@ -53,8 +53,10 @@ class Absence::Counts {
 
   double end() const { return end_; }
 
+  bool matters(Index a, Index b) const { return !problem_.is_anchor[a] || !problem_.is_anchor[b]; }
+
   void add(Index a, Index b, double distance) {
-    if (!(distance < end_) || (problem_.is_anchor[a] && problem_.is_anchor[b])) return;
+    if (!(distance < end_) || !matters(a, b)) return;
     const auto bin = std::min(kBins - 1, static_cast<std::size_t>(distance / end_ * kBins));
     switch (link_between(problem_, trusted_, a, b)) {
       case Link::none:
@@ -112,7 +114,10 @@ Absence Absence::learn(const RangeProblem& problem, const std::vector<bool>& tru
   }
   if (!(counts.end() > 0.0) || nodes.empty()) return {};
   const Eigen::MatrixXd points = placement.positions(Eigen::all, nodes);
-  for (const auto& [a, b] : near_pairs(points, counts.end())) {
+  const auto wanted = [&](std::int32_t a, std::int32_t b) {
+    return counts.matters(nodes[a], nodes[b]);
+  };
+  for (const auto& [a, b] : near_pairs(points, counts.end(), wanted)) {
     counts.add(nodes[a], nodes[b], (points.col(a) - points.col(b)).norm());
   }
   return counts.curve();

@@ -2,8 +2,9 @@
 
 namespace isotherm::geometry::detail {
 
-std::vector<std::pair<std::int32_t, std::int32_t>> near_pairs(const Eigen::MatrixXd& points,
-                                                              double radius) {
+std::vector<std::pair<std::int32_t, std::int32_t>> near_pairs(
+    const Eigen::MatrixXd& points, double radius,
+    const std::function<bool(std::int32_t, std::int32_t)>& wanted) {
   constexpr std::size_t kMost = 300;  // several times what a network has
   const auto n = static_cast<std::int32_t>(points.cols());
   PointGrid grid(radius);
@@ -14,11 +15,12 @@ std::vector<std::pair<std::int32_t, std::int32_t>> near_pairs(const Eigen::Matri
     found.clear();
     const Point place = points.col(v);
     grid.visit_near(place, radius, [&](std::int32_t other, const Point& position) {
-      if (other <= v || found.size() == kMost || !((position - place).norm() <= radius)) return;
-      found.push_back(other);
+      if (other <= v || !((position - place).norm() <= radius)) return;
+      if (!wanted || wanted(v, other)) found.push_back(other);
     });
     std::sort(found.begin(), found.end());
-    for (const auto other : found) pairs.emplace_back(v, other);
+    const std::size_t stride = found.empty() ? 1 : (found.size() - 1) / kMost + 1;
+    for (std::size_t k = 0; k < found.size(); k += stride) pairs.emplace_back(v, found[k]);
   }
   return pairs;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -63,9 +64,11 @@ class PointGrid {
   std::unordered_map<std::uint64_t, std::vector<std::pair<std::int32_t, Point>>> cells_;
 };
 
-/// Pairs of columns of `points` at most `radius` (> 0) from each other, ascending; of each point
-/// with some at most of the later ones, since of a heap there would be too many.
-std::vector<std::pair<std::int32_t, std::int32_t>> near_pairs(const Eigen::MatrixXd& points,
-                                                              double radius);
+/// Pairs of columns of `points` at most `radius` (> 0) from each other that are `wanted` (all if
+/// that is empty), ascending; of each point with an even sample of the later ones where these are
+/// many, since of a heap there would be too many.
+std::vector<std::pair<std::int32_t, std::int32_t>> near_pairs(
+    const Eigen::MatrixXd& points, double radius,
+    const std::function<bool(std::int32_t, std::int32_t)>& wanted = {});
 
 }  // namespace isotherm::geometry::detail

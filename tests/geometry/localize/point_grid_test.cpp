@@ -26,5 +26,14 @@ TEST(NearPairs, OfAHeapAreNotAll) {
   EXPECT_TRUE(near_pairs(Eigen::MatrixXd(2, 0), 1.0).empty());
 }
 
+TEST(NearPairs, OfAHeapAreAnEvenSampleOfTheWantedOnes) {
+  const auto odd = [](std::int32_t a, std::int32_t b) { return a == 0 && b % 2 == 1; };
+  const auto pairs = near_pairs(Eigen::MatrixXd::Zero(2, 3000), 1.0, odd);
+  ASSERT_EQ(pairs.size(), 300);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    EXPECT_EQ(pairs[k].second, static_cast<std::int32_t>(10 * k + 1));
+  }
+}
+
 }  // namespace
 }  // namespace isotherm::geometry::detail
