@@ -159,7 +159,7 @@ class Start {
   // A large part that hangs on few nodes may have turned, and what lay between it and the rest lost
   // its place: springs of wide loss draw such a tear together.
   Candidate drawn_together(Candidate best) const {
-    constexpr double kTear = 3.0;  // ranges that fit afterwards, at least
+    constexpr double kTear = 0.5;  // of what a range that fits is worth, at least
     if (is_firm(best, kWhole)) return best;
     auto map = best.all;
     unfold(problem_, trusted_, evidence_.absence, errors(), gate_, options_, map);
