@@ -339,7 +339,7 @@ def exceptions_section(store):
     header = ["nodes", "degree", "noise", "wrong ranges", "seed", "ours", "ratio", "localised",
               "far off"]
     return (f"### Beyond the target\n\nOf {networks} networks, {len(rows)} have a ratio above 1.5 "
-            f"or localised nodes far off:\n\n{table(header, rows)}\n")
+            f"or localised nodes far off:\n\n{table(header, rows)}\n\n{BEYOND}")
 
 
 def write_csv(path, header, rows):
@@ -546,13 +546,26 @@ one before.
 *least squares* fits all ranges from where that ends; both place all nodes that are connected.
 *Ours, true ranges only* is `isotherm localize` given only the correct ranges of the same network
 (false ranges leave those that it has without them as they are: one estimate serves for all their
-shares); *ratio* compares it with ours on the nodes that both localise. Precision and recall are those of
-the verdicts on ranges. *Localised* leaves out nodes that, or whose surroundings, fit
+shares); *ratio* compares it with ours on the nodes that both localise. Precision and recall are
+those of the verdicts on ranges. *Localised* leaves out nodes that, or whose surroundings, fit
 nearly as well elsewhere; *far off* are those of the localised that are more than half a
 radius from the truth. A ratio says nothing of nodes that only one of the two localises. With
 biased ranges the true ones alone can localise fewer nodes: where a fifth of the ranges is
 missing, absence proves less, while a range that is too long is still a range.
 
+"""
+
+BEYOND = """Ratios above 1.5 occur with biased ranges only. In the two networks of 100 nodes that have
+one with a fifth of the ranges biased it is a single node: with degree 20 one of the five ranges of
+a node at the border is biased, and all five agree within 1.7 deviations in a wrong place; with
+degree 12 five of twelve are, and the place found explains the twelve better than the true one, by 9
+in twice the log of the likelihood. In networks of 1,000 nodes of degree 12 whole parts are off: in
+that with 10 % of noise, 20 % biased ranges and seed 2 eleven of them, the largest of 42 nodes
+shifted by half a radius, others turned by up to 23 degrees. Noise of 10 % bends what lies between
+them and the rest until it fits.
+
+The nodes far off among 10,000 are no outliers: they lie at the border, off by 0.5 to 0.7 radii where
+those next to them are by 0.4 to 0.5. From ten anchors errors add up as far as that.
 """
 
 REAL = """## Real ranges
