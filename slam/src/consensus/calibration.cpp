@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "loop_pair.hpp"
 #include "short_cycles.hpp"
@@ -12,12 +11,14 @@
 namespace isotherm::slam::detail {
 namespace {
 
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kMargin = 5.0;         // over what short cycles say of odometry
 constexpr double kDriftMargin = 10.0;   // the same, with room for drift
 constexpr double kLeeway = 5.0;         // above that, where they find it better than stated
 constexpr double kLargestChange = 2.0;  // of a factor, in one step
 constexpr double kWorthRescaling = 1.1;
+// Up to here a gate for one correct loop in 10,000 refutes three in 1,000 at most, and a
+// few false loops among the accepted ones ask for as much.
+constexpr double kWorthWidening = 1.5;
 constexpr int kSteps = 6;  // of Gauss-Newton
 
 double moved(double present, double wanted, double least, double most) {
@@ -41,6 +42,25 @@ void Calibration<Pose>::learn_from_cycles(const MapVolume<Pose>& map) {
 }
 
 template <class Pose>
+CovarianceScale Calibration<Pose>::wanted(const Estimate<Pose>& estimate,
+                                          const std::vector<bool>& accepted,
+                                          const std::vector<double>& probability) const {
+  const auto telling = telling_loops(graph_, estimate, accepted, shown());
+  Estimate<Pose> from_telling(graph_);
+  from_telling.restore(estimate.layout());
+  from_telling.update(telling, scale(), kSteps);
+  return variance_components(graph_, from_telling, telling, probability, scale());
+}
+
+template <class Pose>
+bool Calibration<Pose>::asks_for_wider(const Estimate<Pose>& estimate,
+                                       const std::vector<bool>& accepted,
+                                       const std::vector<double>& probability) const {
+  const auto [odometry, loops] = wanted(estimate, accepted, probability);
+  return std::max(odometry, loops) > kWorthWidening;
+}
+
+template <class Pose>
 bool Calibration<Pose>::learn_from_accepted(const Estimate<Pose>& estimate,
                                             const std::vector<bool>& accepted,
                                             const std::vector<double>& probability,
@@ -51,15 +71,10 @@ bool Calibration<Pose>::learn_from_accepted(const Estimate<Pose>& estimate,
   }
   least_odometry_ = std::min(least_odometry_, least_odometry(chi2));
 
-  const auto telling = telling_loops(graph_, estimate, accepted, shown());
-  Estimate<Pose> from_telling(graph_);
-  from_telling.restore(estimate.layout());
-  from_telling.update(telling, scale(), kSteps);
-  const auto wanted = variance_components(graph_, from_telling, telling, probability, scale());
-  const CovarianceScale next = {
-      moved(scale_.odometry, wanted.odometry, least_odometry_, most_odometry()),
-      moved(scale_.loops, wanted.loops, 1.0, kNoLimit)};
-  const double level = wanted.loops / next.loops;
+  const auto [odometry, loops] = wanted(estimate, accepted, probability);
+  const CovarianceScale next = {moved(scale_.odometry, odometry, least_odometry_, most_odometry()),
+                                moved(scale_.loops, loops, 1.0, most_)};
+  const double level = std::min(most_, loops / next.loops);
   const bool rescaled = differ(next.odometry, scale_.odometry) || differ(next.loops, scale_.loops);
   const double tightened = std::clamp(tightened_ * tail_share, tightened_ / kLargestChange, 1.0);
   const bool changed = rescaled || differ(level, loop_level_) || differ(tightened, tightened_);
@@ -71,7 +86,7 @@ bool Calibration<Pose>::learn_from_accepted(const Estimate<Pose>& estimate,
 
 template <class Pose>
 double Calibration<Pose>::most_odometry() const {
-  return least_odometry_ < 1.0 ? kLeeway * least_odometry_ : kNoLimit;
+  return std::min(most_, least_odometry_ < 1.0 ? kLeeway * least_odometry_ : kNoLimit);
 }
 
 template <class Pose>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -20,8 +21,10 @@ class Calibration {
  public:
   using Pairs = std::vector<std::pair<Index, Index>>;
 
-  /// `pairs` (near_pairs) are the short cycles. Both must outlive this object.
-  Calibration(const ReducedGraph<Pose>& graph, const Pairs& pairs) : graph_(graph), pairs_(pairs) {}
+  /// `pairs` (near_pairs) are the short cycles. Both must outlive this object. Unless
+  /// `may_widen`, covariances are only tightened.
+  Calibration(const ReducedGraph<Pose>& graph, const Pairs& pairs, bool may_widen)
+      : graph_(graph), pairs_(pairs), most_(may_widen ? kNoLimit : 1.0) {}
 
   /// The factors on what the file states.
   CovarianceScale scale() const { return {scale_.odometry, scale_.loops * tightened_}; }
@@ -44,6 +47,10 @@ class Calibration {
   bool learn_from_accepted(const Estimate<Pose>& estimate, const std::vector<bool>& accepted,
                            const std::vector<double>& probability, double tail_share);
 
+  /// Whether the accepted loops want covariances wider than the file states.
+  bool asks_for_wider(const Estimate<Pose>& estimate, const std::vector<bool>& accepted,
+                      const std::vector<double>& probability) const;
+
   /// Doubles odometry's covariance, as far as short cycles permit.
   void double_odometry();
 
@@ -52,18 +59,24 @@ class Calibration {
   bool allow_for_drift();
 
  private:
+  static constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
   // The scale, but with loops as accurate as short cycles show, which go through them as
   // well: most are, if not the worst.
   CovarianceScale shown() const {
     return {scale_.odometry, scale_.loops * std::min(tightened_, least_odometry_)};
   }
 
+  // By variance components.
+  CovarianceScale wanted(const Estimate<Pose>& estimate, const std::vector<bool>& accepted,
+                         const std::vector<double>& probability) const;
   double margin() const;
   double most_odometry() const;
   double least_odometry(const std::vector<double>& chi2) const;
 
   const ReducedGraph<Pose>& graph_;
   const Pairs& pairs_;
+  double most_;                     // of both scales
   std::vector<double> cycle_chi2_;  // one a pair, at the covariances of the file
   CovarianceScale scale_;           // variance components; of loops at least 1
   bool drift_allowed_ = false;

@@ -1,5 +1,7 @@
 #include "isotherm/slam/consensus.hpp"
 
+#include <memory>
+
 #include "../candidate_verdicts.hpp"
 #include "isotherm/base/error.hpp"
 #include "search.hpp"
@@ -22,8 +24,15 @@ ConsensusResult consensus(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
   result.verdicts = candidate_verdicts(graph, roles);
   if (roles.candidates.empty()) return result;
   const auto reduced = detail::reduce(graph, roles);
-  detail::Search<Pose> search(reduced, options);
-  search.run(result);
+  // False loops among the accepted ones would widen the covariances, and let more in: the
+  // file is taken at its word as long as that explains what is accepted.
+  auto search = std::make_unique<detail::Search<Pose>>(reduced, options, false);
+  search->run();
+  if (options.calibrate && search->asks_for_wider()) {
+    search = std::make_unique<detail::Search<Pose>>(reduced, options, true);
+    search->run();
+  }
+  search->report(result);
   for (auto& info : result.details) {
     for (Index& loop : info.conflicts) loop = roles.candidates[loop];
   }

@@ -29,14 +29,15 @@ double log_odds_of(double probability) { return std::log(probability / (1.0 - pr
 }  // namespace
 
 template <class Pose>
-Search<Pose>::Search(const ReducedGraph<Pose>& graph, const ConsensusOptions& options)
+Search<Pose>::Search(const ReducedGraph<Pose>& graph, const ConsensusOptions& options,
+                     bool may_widen)
     : graph_(graph),
       options_(options),
       required_odds_(log_odds_of(1.0 - options.significance)),
       map_(graph.poses),
       estimate_(graph),
       near_pairs_(near_pairs(graph, options.window)),
-      calibration_(graph, near_pairs_),
+      calibration_(graph, near_pairs_, may_widen),
       records_(graph.loops.size()),
       accepted_(graph.loops.size(), false),
       judge_(graph, estimate_, calibration_, map_, accepted_, options.significance) {
@@ -45,7 +46,7 @@ Search<Pose>::Search(const ReducedGraph<Pose>& graph, const ConsensusOptions& op
 }
 
 template <class Pose>
-void Search<Pose>::run(ConsensusResult& result) {
+void Search<Pose>::run() {
   // The scales are learnt from proven loops first: those that are merely likely are
   // the likelier, the wider the covariances, and would feed back.
   accept_and_calibrate(kCalibrations);
@@ -58,7 +59,6 @@ void Search<Pose>::run(ConsensusResult& result) {
   take_likely_ = true;
   accept_and_calibrate(kLastCalibrations);
   for (int k = 0; k < kReconsiderations && reconsider();) ++k;
-  report(result);
 }
 
 template <class Pose>
@@ -247,11 +247,22 @@ void Search<Pose>::learn_from_decided() {
 }
 
 template <class Pose>
-bool Search<Pose>::calibrate() {
+bool Search<Pose>::asks_for_wider() const {
+  return accepted_count() == 0 ||
+         calibration_.asks_for_wider(estimate_, accepted_, probabilities());
+}
+
+template <class Pose>
+std::vector<double> Search<Pose>::probabilities() const {
   std::vector<double> probability = judge_.log_odds();
   for (double& p : probability) p = 1.0 / (1.0 + std::exp(-p));
+  return probability;
+}
+
+template <class Pose>
+bool Search<Pose>::calibrate() {
   const bool changed =
-      calibration_.learn_from_accepted(estimate_, accepted_, probability, judge_.tail_share());
+      calibration_.learn_from_accepted(estimate_, accepted_, probabilities(), judge_.tail_share());
   if (changed) judge_anew();
   return changed;
 }

@@ -21,11 +21,18 @@ class Search {
  public:
   using Selection = std::vector<Index>;
 
-  /// Both must outlive this object.
-  Search(const ReducedGraph<Pose>& graph, const ConsensusOptions& options);
+  /// Both must outlive this object. Covariances are only tightened unless `may_widen`.
+  Search(const ReducedGraph<Pose>& graph, const ConsensusOptions& options, bool may_widen);
 
-  /// Runs to the end and fills in everything in `result` but the verdicts' edges.
-  void run(ConsensusResult& result);
+  /// Runs to the end.
+  void run();
+
+  /// Whether what was accepted asks for wider covariances than the file states, or nothing
+  /// was.
+  bool asks_for_wider() const;
+
+  /// Fills in everything in `result` but the verdicts' edges.
+  void report(ConsensusResult& result) const;
 
  private:
   /// What was decided about one loop.
@@ -70,10 +77,10 @@ class Search {
   Batch clusters_of(const Selection& eligible, const std::vector<double>& odds) const;
   void learn_from_decided();
   bool calibrate();
+  std::vector<double> probabilities() const;
   void judge_anew();
   std::int64_t accepted_count() const;
   void tell_progress() const;
-  void report(ConsensusResult& result) const;
 
   const ReducedGraph<Pose>& graph_;
   const ConsensusOptions& options_;

@@ -99,7 +99,7 @@ TEST(Calibration, GroupsThatRepeatOneMeasurementSayNothingOfAccuracy) {
                            {.type = NoiseType::local_grouped, .fraction = 0.8, .seed = 7});
   const auto graph = reduce(bad.graph, edge_roles(bad.graph));
   const auto pairs = near_pairs(graph, ConsensusOptions().window);
-  Calibration<Pose2> calibration(graph, pairs);
+  Calibration<Pose2> calibration(graph, pairs, true);
   calibration.learn_from_cycles(MapVolume<Pose2>(graph.poses));
   EXPECT_EQ(calibration.scale().odometry, 1.0);
 }
@@ -110,7 +110,7 @@ TEST(Calibration, LeavesRoomForDriftOnlyWhereOdometryIsBetterThanStated) {
     for (auto& constraint : city.graph.constraints) constraint.information *= understated;
     const auto graph = reduce(city.graph, edge_roles(city.graph));
     const auto pairs = near_pairs(graph, ConsensusOptions().window);
-    Calibration<Pose2> calibration(graph, pairs);
+    Calibration<Pose2> calibration(graph, pairs, true);
     calibration.learn_from_cycles(MapVolume<Pose2>(graph.poses));
     const double sharp = calibration.scale().odometry;
     const bool better = understated < 1.0;
@@ -121,6 +121,17 @@ TEST(Calibration, LeavesRoomForDriftOnlyWhereOdometryIsBetterThanStated) {
     const double widest = calibration.scale().odometry;
     EXPECT_NEAR(widest, better ? 10.0 * sharp : 1024.0, 1e-9) << "no accepted loop may widen more";
   }
+}
+
+TEST(Calibration, WidensNothingUnlessItMay) {
+  const auto city = simulate_city({.poses = 200, .measurements = {.loops = 50}, .seed = 3});
+  const auto graph = reduce(city.graph, edge_roles(city.graph));
+  const auto pairs = near_pairs(graph, ConsensusOptions().window);
+  Calibration<Pose2> calibration(graph, pairs, false);
+  calibration.learn_from_cycles(MapVolume<Pose2>(graph.poses));
+  calibration.double_odometry();
+  EXPECT_EQ(calibration.scale().odometry, 1.0);
+  EXPECT_EQ(calibration.scale().loops, 1.0);
 }
 
 TEST(PriorBySpan, IsEvenBeforeAnythingIsDecided) {
