@@ -1,9 +1,10 @@
 #include "isotherm/slam/consensus.hpp"
 
-#include <memory>
+#include <optional>
 
 #include "../candidate_verdicts.hpp"
 #include "isotherm/base/error.hpp"
+#include "near_pairs.hpp"
 #include "search.hpp"
 
 namespace isotherm::slam {
@@ -24,12 +25,14 @@ ConsensusResult consensus(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
   result.verdicts = candidate_verdicts(graph, roles);
   if (roles.candidates.empty()) return result;
   const auto reduced = detail::reduce(graph, roles);
+  const auto pairs = detail::near_pairs(reduced, options.window);
   // False loops among the accepted ones would widen the covariances, and let more in: the
   // file is taken at its word as long as that explains what is accepted.
-  auto search = std::make_unique<detail::Search<Pose>>(reduced, options, false);
+  std::optional<detail::Search<Pose>> search;
+  search.emplace(reduced, pairs, options, false);
   search->run();
   if (options.calibrate && search->asks_for_wider()) {
-    search = std::make_unique<detail::Search<Pose>>(reduced, options, true);
+    search.emplace(reduced, pairs, options, true);
     search->run();
   }
   search->report(result);

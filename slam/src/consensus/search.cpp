@@ -4,11 +4,11 @@
 #include <cmath>
 #include <iterator>
 #include <string>
+#include <utility>
 
 #include "batches.hpp"
 #include "conflicts.hpp"
 #include "isotherm/base/error.hpp"
-#include "near_pairs.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -29,14 +29,14 @@ double log_odds_of(double probability) { return std::log(probability / (1.0 - pr
 }  // namespace
 
 template <class Pose>
-Search<Pose>::Search(const ReducedGraph<Pose>& graph, const ConsensusOptions& options,
-                     bool may_widen)
+Search<Pose>::Search(const ReducedGraph<Pose>& graph, const Pairs& pairs,
+                     const ConsensusOptions& options, bool may_widen)
     : graph_(graph),
       options_(options),
       required_odds_(log_odds_of(1.0 - options.significance)),
       map_(graph.poses),
       estimate_(graph),
-      near_pairs_(near_pairs(graph, options.window)),
+      near_pairs_(pairs),
       calibration_(graph, near_pairs_, may_widen),
       records_(graph.loops.size()),
       accepted_(graph.loops.size(), false),

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "agreement.hpp"
@@ -20,9 +19,12 @@ template <class Pose>
 class Search {
  public:
   using Selection = std::vector<Index>;
+  using Pairs = typename Calibration<Pose>::Pairs;
 
-  /// Both must outlive this object. Covariances are only tightened unless `may_widen`.
-  Search(const ReducedGraph<Pose>& graph, const ConsensusOptions& options, bool may_widen);
+  /// `pairs` are the loops near each other (near_pairs). All three must outlive this object.
+  /// Covariances are only tightened unless `may_widen`.
+  Search(const ReducedGraph<Pose>& graph, const Pairs& pairs, const ConsensusOptions& options,
+         bool may_widen);
 
   /// Runs to the end.
   void run();
@@ -87,7 +89,7 @@ class Search {
   double required_odds_;  // log odds from which a loop counts as proven
   MapVolume<Pose> map_;
   Estimate<Pose> estimate_;
-  std::vector<std::pair<Index, Index>> near_pairs_;
+  const Pairs& near_pairs_;
   Calibration<Pose> calibration_;
   MutualSupport support_;
   std::vector<Record> records_;
