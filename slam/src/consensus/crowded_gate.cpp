@@ -11,11 +11,8 @@ namespace {
 
 constexpr int kOctaves = 5;
 
-}  // namespace
-
-double crowded_gate(std::vector<double> chi2, double gate) {
-  const OctaveCounts loops(std::move(chi2));
-  const double beyond = loops.around(gate * std::numbers::sqrt2);
+// The middle of the emptiest octave on the way down from the gate.
+double valley_below(double gate, const OctaveCounts& loops) {
   double valley = gate;
   double fewest = loops.around(gate);
   for (int k = 1; k <= kOctaves * kStepsPerOctave; ++k) {
@@ -26,7 +23,34 @@ double crowded_gate(std::vector<double> chi2, double gate) {
     fewest = count;
     valley = x;
   }
-  return more(beyond, fewest) ? valley : gate;
+  return valley;
+}
+
+}  // namespace
+
+GateBySpan crowded_gate(const std::vector<SpannedChi2>& loops, double gate) {
+  std::vector<double> all;
+  std::array<std::vector<double>, kSpanClasses> classes;
+  for (const auto& [span, chi2] : loops) {
+    all.push_back(chi2);
+    classes[span_class(span)].push_back(chi2);
+  }
+  GateBySpan gates;
+  gates.fill(gate);
+  const OctaveCounts counts(std::move(all));
+  const double valley = valley_below(gate, counts);
+  const double below = counts.around(valley);
+  const double beyond = counts.around(gate * std::numbers::sqrt2);
+  if (!more(beyond, below)) return gates;
+  // A class with few loops leans on all of them.
+  const double excess = (beyond - below) / (beyond + below);
+  for (std::size_t k = 0; k < kSpanClasses; ++k) {
+    const OctaveCounts of_class(std::move(classes[k]));
+    if (of_class.around(gate * std::numbers::sqrt2) + excess > of_class.around(valley)) {
+      gates[k] = valley;
+    }
+  }
+  return gates;
 }
 
 }  // namespace isotherm::slam::detail

@@ -28,21 +28,23 @@ bool Search<Pose>::join_on_trial() {
   if (groups.size() <= kFewestWitnesses) return false;
   std::stable_sort(groups.begin(), groups.end(),
                    [](const Selection& a, const Selection& b) { return a.size() > b.size(); });
+  const Snapshot before = snapshot();
   std::size_t most = 0;
   std::size_t best = 0;
   for (std::size_t k = 0; k < std::min(groups.size(), kMostTrials); ++k) {
     const std::size_t found = witnesses(groups, k);
+    restore(before);
     if (found > most) best = k;
     most = std::max(most, found);
   }
+  settle();
   if (most < kFewestWitnesses) return false;
   return accept({"trial", groups[best]});
 }
 
-// Groups of which a member is proven once `groups[tried]` is accepted.
+// Groups of which a member is proven once `groups[tried]` is accepted, as it is then.
 template <class Pose>
 std::size_t Search<Pose>::witnesses(const std::vector<Selection>& groups, std::size_t tried) {
-  Snapshot before = snapshot();
   accept({"trial", groups[tried]});
   settle();
   assess();
@@ -54,8 +56,6 @@ std::size_t Search<Pose>::witnesses(const std::vector<Selection>& groups, std::s
              judge_.log_odds(loop, judge_.evidence(loop)) >= required_odds_;
     });
   }
-  restore(std::move(before));
-  settle();
   return count;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "crowded_gate.hpp"
 #include "isotherm/base/statistics.hpp"
 #include "prediction.hpp"
 
@@ -36,9 +35,10 @@ Judge<Pose>::Judge(const ReducedGraph<Pose>& graph, const Estimate<Pose>& estima
       widest_gate_(chi_squared_quantile(1.0 - significance, Pose::kDof)),
       narrowest_refuting_gate_(
           chi_squared_quantile(1.0 - lost_where_crowded(significance), Pose::kDof)),
-      gate_(widest_gate_),
       tail_{widest_gate_, kMostTailFactor},
-      standings_(graph.loops.size()) {}
+      standings_(graph.loops.size()) {
+  gates_.fill(widest_gate_);
+}
 
 template <class Pose>
 double Judge<Pose>::tail_factor() const {
@@ -46,13 +46,23 @@ double Judge<Pose>::tail_factor() const {
 }
 
 template <class Pose>
-double Judge<Pose>::refuting_gate() const {
-  return crowded() ? std::max(gate_, narrowest_refuting_gate_) : widest_gate_;
+bool Judge<Pose>::crowded() const {
+  return std::ranges::any_of(gates_, [this](double gate) { return gate < widest_gate_; });
 }
 
 template <class Pose>
-double Judge<Pose>::drop_gate() const {
-  return std::max(gate_, widest_gate_ * tail_factor() * calibration_.loop_level());
+double Judge<Pose>::refuting_gate(Index loop) const {
+  return gate(loop) < widest_gate_ ? std::max(gate(loop), narrowest_refuting_gate_) : widest_gate_;
+}
+
+template <class Pose>
+double Judge<Pose>::tail_gate() const {
+  return widest_gate_ * tail_factor() * calibration_.loop_level();
+}
+
+template <class Pose>
+double Judge<Pose>::drop_gate(Index loop) const {
+  return std::max(gate(loop), tail_gate());
 }
 
 template <class Pose>
@@ -106,11 +116,12 @@ Evidence Judge<Pose>::weigh(Index loop) const {
 
 template <class Pose>
 typename Judge<Pose>::Selection Judge<Pose>::inconsistent() {
-  const double before = drop_gate();
+  const auto gates_before = gates_;
+  const double tail_before = tail_gate();
   Selection doubtful = misfits();
   learn_tail();
   learn_gate();
-  if (drop_gate() < before) doubtful = misfits();
+  if (tail_gate() < tail_before || gates_ != gates_before) doubtful = misfits();
   double worst = 0.0;
   for (const Index k : doubtful) worst = std::max(worst, evidence(k).chi2);
   std::erase_if(doubtful, [&](Index k) { return evidence(k).chi2 < 0.5 * worst; });
@@ -125,7 +136,7 @@ typename Judge<Pose>::Selection Judge<Pose>::misfits() {
     const auto& link = graph_.loops[loop];
     standing.evidence.chi2 = fitted_chi2(link, estimate_.residual(link), standing.covariance,
                                          calibration_.scale().loops);
-    return standing.evidence.chi2 <= drop_gate();
+    return standing.evidence.chi2 <= drop_gate(loop);
   };
   // An old covariance is an upper bound, and so is the chi-squared it gives.
   Selection doubtful;
@@ -154,14 +165,15 @@ void Judge<Pose>::learn_tail() {
 
 template <class Pose>
 void Judge<Pose>::learn_gate() {
-  gate_ = widest_gate_;
+  gates_.fill(widest_gate_);
   // Only there do the correct loops end well before the gate.
   if (!calibration_.overstated()) return;
-  std::vector<double> chi2;
-  for (const auto& standing : standings_) {
-    if (standing.connected) chi2.push_back(standing.evidence.chi2);
+  std::vector<SpannedChi2> loops;
+  for (std::size_t k = 0; k < standings_.size(); ++k) {
+    const auto& [connected, covariance, fit_known, evidence] = standings_[k];
+    if (connected) loops.push_back({graph_.span(static_cast<Index>(k)), evidence.chi2});
   }
-  gate_ = crowded_gate(std::move(chi2), widest_gate_);
+  gates_ = crowded_gate(loops, widest_gate_);
 }
 
 template <class Pose>

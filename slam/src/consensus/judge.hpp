@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "calibration.hpp"
+#include "crowded_gate.hpp"
 #include "estimate.hpp"
 #include "heavy_tail.hpp"
 #include "map_volume.hpp"
@@ -41,27 +42,27 @@ class Judge {
 
   /// What a loop must meet to be accepted: narrower where false loops crowd around the
   /// widest gate.
-  double gate() const noexcept { return gate_; }
+  double gate(Index loop) const { return gates_[span_class(graph_.span(loop))]; }
 
-  /// Whether false loops crowd there.
-  bool crowded() const noexcept { return gate_ < widest_gate_; }
+  /// Whether false loops crowd there, of whatever span.
+  bool crowded() const;
 
   /// Beyond it a loop that is not accepted is refuted. Between both gates it is in doubt:
   /// few correct loops of Gaussian errors are beyond this one.
-  double refuting_gate() const;
+  double refuting_gate(Index loop) const;
 
   /// How many times farther out than for Gaussian errors the accepted loops may lie.
   double tail_factor() const;
 
   /// The gate of accepted loops: real errors have heavy tails, and where a loop was
   /// accepted it had evidence of its own.
-  double drop_gate() const;
+  double drop_gate(Index loop) const;
 
   const Evidence& evidence(Index loop) const { return standings_[loop].evidence; }
   bool connected(Index loop) const { return standings_[loop].connected; }
-  bool inside_gate(Index loop) const { return evidence(loop).chi2 <= gate_; }
+  bool inside_gate(Index loop) const { return evidence(loop).chi2 <= gate(loop); }
   bool refuted(Index loop) const {
-    return !accepted_[loop] && evidence(loop).chi2 > refuting_gate();
+    return !accepted_[loop] && evidence(loop).chi2 > refuting_gate(loop);
   }
 
   /// Prior and evidence of a loop; of all.
@@ -106,6 +107,7 @@ class Judge {
   Selection misfits();
   void learn_tail();
   void learn_gate();
+  double tail_gate() const;
 
   const ReducedGraph<Pose>& graph_;
   const Estimate<Pose>& estimate_;
@@ -115,7 +117,7 @@ class Judge {
   double significance_;
   double widest_gate_;
   double narrowest_refuting_gate_;  // where false loops crowd
-  double gate_;
+  GateBySpan gates_;
   Tail tail_;
   std::vector<Standing> standings_;
   PriorBySpan prior_;

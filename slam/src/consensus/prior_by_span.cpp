@@ -1,9 +1,7 @@
 #include "prior_by_span.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 
 namespace isotherm::slam::detail {
 namespace {
@@ -25,24 +23,20 @@ struct Tally {
 
 PriorBySpan::PriorBySpan(std::span<const Decision> decided) {
   Tally all{.kept = 1.0, .decided = 2.0};
-  std::array<Tally, kClasses> classes{};
+  std::array<Tally, kSpanClasses> classes{};
   for (const auto& decision : decided) {
     all.add(decision.kept);
-    classes[class_of(decision.span)].add(decision.kept);
+    classes[span_class(decision.span)].add(decision.kept);
   }
   fraction_ = all.kept / all.decided;
   const double odds = fraction_ / (1.0 - fraction_);
-  for (std::size_t k = 0; k < kClasses; ++k) {
+  for (std::size_t k = 0; k < kSpanClasses; ++k) {
     const double kept = classes[k].kept + kLean * fraction_;
     const double refuted = classes[k].decided - classes[k].kept + kLean * (1.0 - fraction_);
     log_odds_[k] = std::log(std::max(kept / refuted, odds));
   }
 }
 
-double PriorBySpan::log_odds(Index span) const { return log_odds_[class_of(span)]; }
-
-std::size_t PriorBySpan::class_of(Index span) {
-  return static_cast<std::size_t>(std::bit_width(static_cast<std::uint32_t>(span)));
-}
+double PriorBySpan::log_odds(Index span) const { return log_odds_[span_class(span)]; }
 
 }  // namespace isotherm::slam::detail

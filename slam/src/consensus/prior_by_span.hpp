@@ -3,7 +3,7 @@
 #include <array>
 #include <span>
 
-#include "isotherm/spectral/types.hpp"
+#include "span_class.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -35,11 +35,8 @@ class PriorBySpan {
   double fraction() const noexcept { return fraction_; }
 
  private:
-  static constexpr std::size_t kClasses = 33;  // no span, and one a power of two
-  static std::size_t class_of(Index span);
-
   double fraction_ = 0.5;
-  std::array<double, kClasses> log_odds_{};
+  std::array<double, kSpanClasses> log_odds_{};
 };
 
 }  // namespace isotherm::slam::detail

@@ -59,6 +59,7 @@ void Search<Pose>::run() {
   take_likely_ = true;
   accept_and_calibrate(kLastCalibrations);
   for (int k = 0; k < kReconsiderations && reconsider();) ++k;
+  readmit_together();
 }
 
 template <class Pose>
@@ -290,7 +291,7 @@ void Search<Pose>::report(ConsensusResult& result) const {
     const Evidence& evidence = judge_.evidence(loop);
     auto& verdict = result.verdicts[k];
     verdict.score = evidence.chi2;
-    verdict.threshold = accepted_[k] ? judge_.drop_gate() : judge_.refuting_gate();
+    verdict.threshold = accepted_[k] ? judge_.drop_gate(loop) : judge_.refuting_gate(loop);
     if (accepted_[k]) {
       verdict.stage = "round " + std::to_string(records_[k].round);
     } else if (judge_.refuted(loop)) {
@@ -308,7 +309,7 @@ void Search<Pose>::report(ConsensusResult& result) const {
     info.connected = judge_.connected(loop);
   }
   auto conflicts =
-      name_conflicts(graph_, map_, calibration_.scale(), judge_.refuting_gate(), accepted_, pruned);
+      name_conflicts(graph_, map_, calibration_.scale(), judge_.widest_gate(), accepted_, pruned);
   for (std::size_t k = 0; k < accepted_.size(); ++k) {
     result.details[k].conflicts = std::move(conflicts[k]);
   }

@@ -61,6 +61,7 @@ class Search {
   bool join_on_trial();
   std::size_t witnesses(const std::vector<Selection>& groups, std::size_t tried);
   bool reconsider();
+  void readmit_together();
   std::size_t freed_without(const Selection& loops);
   Snapshot snapshot() const;
   void restore(Snapshot before);

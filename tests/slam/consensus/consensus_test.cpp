@@ -1,6 +1,7 @@
 #include "isotherm/slam/consensus.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -328,6 +329,38 @@ TEST(Consensus, JoinsPartsByWhatLoopsElsewhereConfirm) {
     EXPECT_TRUE(
         std::ranges::any_of(result.rounds, [](const auto& r) { return r.rule == "trial"; }));
   }
+}
+
+// Ten loops join two lines. Three more, on the other side of a map that can give way, are
+// each 1.2 times beyond the gate of what those say, but fit together with them.
+TEST(Consensus, LoopsThatSayTheSameAreReadmittedTogether) {
+  const Index length = 60;
+  const double deviation = 1e-3;
+  const Pose2::Matrix precise = 1e12 * Pose2::Matrix::Identity();
+  PoseGraph<Pose2> graph;
+  for (Index v = 0; v < 2 * length; ++v) {
+    graph.ids.push_back((v < length ? 'a' : 'b') * (1ull << 56) + static_cast<std::uint64_t>(v));
+    graph.poses.push_back(Pose2(v % length, 0.0, 0.0));
+    if (v % length == 0) continue;
+    graph.constraints.push_back({v - 1, v, Pose2(1.0, 0.0, 0.0), precise});
+  }
+  const double gate = chi_squared_quantile(1.0 - 1e-4, 3);
+  const auto join = [&](Index k, double off) {
+    Pose2::Matrix information = precise;
+    information.topLeftCorner<2, 2>() = Eigen::Matrix2d::Identity() / (deviation * deviation);
+    graph.constraints.push_back({k, k + length, Pose2(0.0, 5.0 + off, 0.0), information});
+  };
+  // Ten loops predict one more with a tenth of its variance.
+  const double off = deviation * std::sqrt(1.2 * gate * 11.0 / 10.0);
+  for (Index k = 0; k < 10; ++k) join(k, 1e-5 * k);
+  for (Index k = 40; k < 43; ++k) join(k, off + 1e-5 * k);
+  const auto kept = [&] {
+    return count(consensus(graph, edge_roles(graph), {.calibrate = false}).verdicts, Verdict::keep);
+  };
+  EXPECT_EQ(kept(), 13);
+  graph.constraints.pop_back();
+  graph.constraints.pop_back();
+  EXPECT_EQ(kept(), 10) << "one alone stays refuted";
 }
 
 TYPED_TEST(ConsensusOf, DegenerateGraphs) {

@@ -60,7 +60,8 @@ struct ConsensusRound {
   std::int64_t accepted = 0;  ///< in this round
   std::int64_t dropped = 0;   ///< accepted before, inconsistent now
   std::int64_t in_force = 0;  ///< accepted loops after the round
-  std::string rule;           ///< "evidence", "cluster", "prior", "span" or "trial"
+  /// "evidence", "cluster", "prior", "span", "trial" or "together"
+  std::string rule;
 };
 
 struct ConsensusResult {
@@ -76,7 +77,7 @@ struct ConsensusResult {
   /// How many times farther out than for Gaussian errors accepted loops may lie by the
   /// tail of their chi-squared, 1 to 4; 4 where too few were accepted to tell.
   double tail_factor = 4.0;
-  bool settled = true;           ///< false: max_rounds ended the search
+  bool settled = true;  ///< false: max_rounds ended the search
 };
 
 /// Decides which candidates agree with odometry and with each other.
