@@ -5,11 +5,14 @@
 #include <set>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include "isotherm/base/parallel.hpp"
 #include "localize/crowd.hpp"
 #include "localize/evidence.hpp"
 #include "localize/fold_axes.hpp"
 #include "localize/fold_trial.hpp"
+#include "localize/found_bodies.hpp"
 #include "localize/hinge_parts.hpp"
 #include "localize/mirror_image.hpp"
 #include "localize/multilateration.hpp"
@@ -74,10 +77,12 @@ class Firmness {
   }
 
  private:
-  Nodes anchors() const {
+  Nodes anchors() const { return nodes_that_are(problem_.is_anchor); }
+
+  Nodes nodes_that_are(const std::vector<bool>& marked) const {
     Nodes nodes;
     for (Index v = 0; v < problem_.nodes; ++v) {
-      if (problem_.is_anchor[v]) nodes.push_back(v);
+      if (marked[v]) nodes.push_back(v);
     }
     return nodes;
   }
@@ -114,15 +119,15 @@ class Firmness {
 
   // Takes out the parts that may turn on a hinge.
   void release_turning_parts(Placement& firm) const {
+    const auto everywhere = surroundings_of(nodes_that_are(firm.placed));
     std::set<Nodes> seen;
     for (Index v = 0; v < problem_.nodes; ++v) {
       if (!firm.placed[v]) continue;
       for (const auto& part : parts_behind(problem_, trusted_, firm.placed, v)) {
         if (!seen.insert(part).second) continue;
-        auto rest = firm;
-        for (const Index w : part) rest.placed[w] = problem_.is_anchor[w];
-        if (is_fixed(part, rest)) continue;
         for (const Index w : part) firm.placed[w] = problem_.is_anchor[w];
+        if (!is_fixed(part, firm, everywhere)) continue;
+        for (const Index w : part) firm.placed[w] = true;
       }
     }
   }
@@ -173,13 +178,14 @@ class Firmness {
       }
     };
     touch(body);
+    auto surroundings = surroundings_of(body);
     for (bool any = true; any;) {
       any = false;
       for (std::size_t k = 0; k < others.size(); ++k) {
         if (!touched[k]) continue;
         touched[k] = false;
         auto& other = others[k];
-        if (other.empty() || !is_fixed(other, firm)) continue;
+        if (other.empty() || !is_fixed(other, firm, surroundings)) continue;
         Nodes fresh;
         for (const Index v : other) {
           if (!firm.placed[v]) fresh.push_back(v);
@@ -188,29 +194,34 @@ class Firmness {
         const auto added = spread(firm, std::move(fresh), strict_, {});
         body.insert(body.end(), added.begin(), added.end());
         touch(added);
+        surroundings.extend(surroundings_of(added));
         other.clear();
         any = true;
       }
     }
   }
 
+  // Where it matters that nodes have no ranges to these.
+  Eigen::AlignedBoxXd surroundings_of(const Nodes& nodes) const {
+    Eigen::AlignedBoxXd box(problem_.dimension);
+    for (const Index v : nodes) box.extend(placement_.positions.col(v));
+    const Eigen::VectorXd margin =
+        Eigen::VectorXd::Constant(problem_.dimension, evidence_.absence.reach());
+    if (box.isEmpty()) return box;
+    return {box.min() - margin, box.max() + margin};
+  }
+
   // Whether a body has one place among firm nodes: no mirror image fits nearly as well.
-  bool is_fixed(const Nodes& body, const Placement& firm) const {
+  bool is_fixed(const Nodes& body, const Placement& firm,
+                const Eigen::AlignedBoxXd& surroundings) const {
     auto inside = body;
     std::sort(inside.begin(), inside.end());
     TiedBody tied;
     auto& ties = tied.ties;
     std::vector<Index> outside;
-    const int d = problem_.dimension;
     for (const Index v : body) {
       if (firm.placed[v]) {
-        // The place of an anchor cannot be at fault, only the ranges that tie it to the body.
-        const double limit = (problem_.is_anchor[v] ? d + 1 : 1) * evidence_.limits.apart;
-        ties.push_back({placement_.positions.col(v),
-                        placement_.positions.col(v),
-                        0.0,
-                        sigma_,
-                        {limit, limit}});
+        ties.push_back(shared(v));
         continue;
       }
       outside.push_back(v);
@@ -226,10 +237,27 @@ class Firmness {
     return holds(tied, [&](const std::vector<Point>& places) {
       double cost = 0.0;
       for (std::size_t k = 0; k < places.size(); ++k) {
+        if (!surroundings.contains(places[k])) continue;
         cost += crowd_.absence_cost(outside[k], places[k], firm.placed);
       }
       return cost;
     });
+  }
+
+  // Of a node that is part of both bodies.
+  Tie shared(Index v) const {
+    // The place of an anchor cannot be at fault, only the ranges that tie it to the body.
+    const double limit =
+        (problem_.is_anchor[v] ? problem_.dimension + 1 : 1) * evidence_.limits.apart;
+    const Point place = placement_.positions.col(v);
+    return {place, place, 0.0, sigma_, {limit, limit}};
+  }
+
+  // Whether two bodies that have these nodes in common are one.
+  bool fix_body(const Nodes& common) const {
+    TiedBody body;
+    for (const Index v : common) body.ties.push_back(shared(v));
+    return holds(body, {});
   }
 
   bool holds(const TiedBody& body, const PointsCost& points_cost) const {
@@ -241,22 +269,20 @@ class Firmness {
       if (tie.cost() <= std::min(gate_, 0.999 * tie.limit())) held += tie.distance == 0.0 ? d : 1;
     }
     if (held <= d * (d + 1) / 2 + 1) return false;
-    cost += points_cost(body.points);
-    return mirror_image_cost(body, points_cost, cost + clear_) - cost >= clear_;
+    if (points_cost) cost += points_cost(body.points);
+    return !has_mirror_image(body, cost + clear_, points_cost);
   }
 
   // What can be reached from each clique, the largest first.
   std::vector<Nodes> find_bodies() const {
-    std::vector<Nodes> bodies;
-    std::vector<bool> covered(problem_.nodes, false);
+    FoundBodies found(problem_.nodes);
     for (const auto& seed : consistent_cliques(problem_, agreeing_pairs(), gate_, options_)) {
-      const bool known = std::all_of(seed.members.begin(), seed.members.end(),
-                                     [&](Index v) { return covered[v]; });
-      if (known) continue;
+      if (found.cover(seed.members)) continue;
       auto firm = with(seed.members);
-      bodies.push_back(spread(firm, seed.members, strict_, {}));
-      for (const Index v : bodies.back()) covered[v] = true;
+      found.begin_body();
+      found.end_body(spread(firm, seed.members, strict_, {}, &found));
     }
+    auto bodies = std::move(found).take();
     std::stable_sort(bodies.begin(), bodies.end(),
                      [](const Nodes& a, const Nodes& b) { return a.size() > b.size(); });
     return bodies;
@@ -273,34 +299,50 @@ class Firmness {
   }
 
   // Adds the nodes that are firm thanks to those in `firm`, of which `fresh` are new, and
-  // so on; not those that are `bound`. All of them.
-  Nodes spread(Placement& firm, Nodes fresh, const Limits& limits,
-               const std::vector<bool>& bound) const {
-    constexpr std::size_t kFew = 32;  // not worth waking other threads for
-    Nodes all = fresh;
+  // so on; not those that are `bound`. Bodies `found` before come as a whole with nodes that fix
+  // them. All of them.
+  Nodes spread(Placement& firm, Nodes fresh, const Limits& limits, const std::vector<bool>& bound,
+               FoundBodies* found = nullptr) const {
+    Nodes all;
     while (!fresh.empty()) {
-      Nodes near;
-      for (const Index v : fresh) {
-        for (const auto& [vertex, edge] : problem_.pair_graph.neighbours(v)) {
-          if (!trusted_[edge] || !placement_.placed[vertex] || firm.placed[vertex]) continue;
-          if (bound.empty() || !bound[vertex]) near.push_back(vertex);
-        }
-      }
-      std::sort(near.begin(), near.end());
-      near.erase(std::unique(near.begin(), near.end()), near.end());
-      std::vector<char> has_one(near.size(), 0);
-      const int threads = near.size() < kFew ? 1 : options_.threads;
-      parallel_for(
-          static_cast<std::int64_t>(near.size()), threads, options_.progress, "determinacy",
-          [&](std::int64_t k) { has_one[k] = has_one_place(firm, near[k], limits) ? 1 : 0; });
-      fresh.clear();
-      for (std::size_t k = 0; k < near.size(); ++k) {
-        if (has_one[k] != 0) fresh.push_back(near[k]);
-      }
       for (const Index v : fresh) firm.placed[v] = true;
       all.insert(all.end(), fresh.begin(), fresh.end());
+      if (found != nullptr) {
+        const auto joined =
+            found->join(fresh, firm.placed, [&](const Nodes& shared) { return fix_body(shared); });
+        // Whoever has new neighbours among those that joined has others among the rest.
+        const auto& fewer = joined.size() < all.size() ? joined : all;
+        if (!joined.empty()) fresh.insert(fresh.end(), fewer.begin(), fewer.end());
+        all.insert(all.end(), joined.begin(), joined.end());
+      }
+      fresh = made_firm(firm, fresh, limits, bound);
     }
     return all;
+  }
+
+  // The neighbours of fresh nodes that have one place among the firm ones.
+  Nodes made_firm(const Placement& firm, const Nodes& fresh, const Limits& limits,
+                  const std::vector<bool>& bound) const {
+    constexpr std::size_t kFew = 32;  // not worth waking other threads for
+    Nodes near;
+    for (const Index v : fresh) {
+      for (const auto& [vertex, edge] : problem_.pair_graph.neighbours(v)) {
+        if (!trusted_[edge] || !placement_.placed[vertex] || firm.placed[vertex]) continue;
+        if (bound.empty() || !bound[vertex]) near.push_back(vertex);
+      }
+    }
+    std::sort(near.begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
+    std::vector<char> has_one(near.size(), 0);
+    const int threads = near.size() < kFew ? 1 : options_.threads;
+    parallel_for(
+        static_cast<std::int64_t>(near.size()), threads, options_.progress, "determinacy",
+        [&](std::int64_t k) { has_one[k] = has_one_place(firm, near[k], limits) ? 1 : 0; });
+    Nodes made;
+    for (std::size_t k = 0; k < near.size(); ++k) {
+      if (has_one[k] != 0) made.push_back(near[k]);
+    }
+    return made;
   }
 
   // Whether the node's place among the firm ones is clearly the best.

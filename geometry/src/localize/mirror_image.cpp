@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -45,8 +44,20 @@ Motions motions_at(const Point& point, const Point& centre) {
   return motions;
 }
 
-void move_rigidly(TiedBody& body, const Motion& step) {
-  const Point centre = centre_of(body.ties);
+// Turns points about a centre and shifts them.
+struct RigidMove {
+  Block rotation;
+  Point centre;
+  Point shift;
+
+  void operator()(Point& point) const {
+    const Point turned = rotation * (point - centre);
+    point = turned + centre + shift;
+  }
+};
+
+RigidMove rigid_move(const std::vector<Tie>& ties, const Motion& step) {
+  const Point centre = centre_of(ties);
   const auto d = centre.size();
   Block linear = Block::Identity(d, d);
   Eigen::Index column = d;
@@ -57,14 +68,7 @@ void move_rigidly(TiedBody& body, const Motion& step) {
     }
   }
   const Eigen::JacobiSVD<Block> svd(linear, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Block rotation = svd.matrixU() * svd.matrixV().transpose();
-  const Point shift = step.head(d);
-  const auto move = [&](Point& point) {
-    const Point turned = rotation * (point - centre);
-    point = turned + centre + shift;
-  };
-  for (auto& tie : body.ties) move(tie.own);
-  for (auto& point : body.points) move(point);
+  return {svd.matrixU() * svd.matrixV().transpose(), centre, step.head(d)};
 }
 
 // A Gauss-Newton step of the ties that fit well enough to have a say.
@@ -95,41 +99,68 @@ Motion rigid_step(const std::vector<Tie>& ties) {
   return normal.completeOrthogonalDecomposition().solve(right);
 }
 
-double settled_cost(TiedBody body, const PointsCost& points_cost, double enough) {
-  constexpr int kIterations = 6;
-  double least = total_cost(body.ties);
-  auto best = body.points;
-  for (int k = 0; k < kIterations; ++k) {
-    move_rigidly(body, rigid_step(body.ties));
-    const double cost = total_cost(body.ties);
-    if (cost >= least) continue;
-    least = cost;
-    best = body.points;
-  }
-  return points_cost && least < enough ? least + points_cost(best) : least;
-}
+// In a line (plane, in space).
+struct Reflection {
+  Point through;
+  Point normal;  // of unit length
 
-// The body reflected in the line (plane, in space) through d points; as it is, if these
-// do not span one.
-TiedBody reflected(TiedBody body, const std::vector<Point>& through) {
+  void operator()(Point& point) const { point -= 2.0 * normal.dot(point - through) * normal; }
+};
+
+// In the line (plane) through d points; in one of those through them if they span less.
+Reflection reflection(const std::vector<Point>& through) {
   const auto d = through.front().size();
   Eigen::MatrixXd along(d, d - 1);
   for (Eigen::Index k = 1; k < d; ++k) along.col(k - 1) = through[k] - through.front();
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(along);
   const Eigen::MatrixXd basis = qr.householderQ();
-  const Point normal = basis.col(d - 1);
-  const auto reflect = [&](Point& point) {
-    point -= 2.0 * normal.dot(point - through.front()) * normal;
-  };
-  for (auto& tie : body.ties) reflect(tie.own);
-  for (auto& point : body.points) reflect(point);
-  return body;
+  return {through.front(), basis.col(d - 1)};
 }
 
-// The body reflected in lines (planes, in space) through d of the ends of its ties, those
-// first whose ties cost least as they are.
-std::vector<TiedBody> mirror_images(const TiedBody& body) {
-  const auto& ties = body.ties;
+template <class Move>
+void move_ends(const Move& move, std::vector<Tie>& ties) {
+  for (auto& tie : ties) move(tie.own);
+}
+
+double reflected_cost(const std::vector<Tie>& ties, const Reflection& reflection) {
+  double sum = 0.0;
+  for (auto tie : ties) {
+    reflection(tie.own);
+    sum += tie.cost();
+  }
+  return sum;
+}
+
+// Whether a mirror image moved to where its ties fit best costs less. The points, which can be
+// many, follow only if its ties leave that open.
+bool settles_below(double limit, const TiedBody& body, const Reflection& reflection,
+                   const PointsCost& points_cost) {
+  constexpr int kIterations = 6;
+  auto ties = body.ties;
+  move_ends(reflection, ties);
+  double least = total_cost(ties);
+  std::vector<RigidMove> moves;
+  std::size_t best = 0;  // moves
+  for (int k = 0; k < kIterations; ++k) {
+    moves.push_back(rigid_move(ties, rigid_step(ties)));
+    move_ends(moves.back(), ties);
+    const double cost = total_cost(ties);
+    if (cost >= least) continue;
+    least = cost;
+    best = moves.size();
+  }
+  if (least >= limit || !points_cost) return least < limit;
+  auto points = body.points;
+  for (auto& point : points) {
+    reflection(point);
+    for (std::size_t k = 0; k < best; ++k) moves[k](point);
+  }
+  return least + points_cost(points) < limit;
+}
+
+// Lines (planes, in space) through d of the ends of the ties, those first in which the reflected
+// ties cost least as they are.
+std::vector<Reflection> mirrors(const std::vector<Tie>& ties) {
   const bool plane = ties.front().own.size() == 2;
   const std::size_t most_ends = plane ? 12 : 8;  // 66 lines, 56 planes
   std::vector<Point> ends;
@@ -137,20 +168,22 @@ std::vector<TiedBody> mirror_images(const TiedBody& body) {
   for (std::size_t k = 0; k < 2 * ties.size(); k += stride) {
     ends.push_back(k % 2 == 0 ? ties[k / 2].own : ties[k / 2].other);
   }
-  std::vector<TiedBody> images;
+  std::vector<Reflection> found;
   for (std::size_t a = 0; a < ends.size(); ++a) {
     for (std::size_t b = a + 1; b < ends.size(); ++b) {
-      if (plane) images.push_back(reflected(body, {ends[a], ends[b]}));
+      if (plane) found.push_back(reflection({ends[a], ends[b]}));
       for (std::size_t c = b + 1; !plane && c < ends.size(); ++c) {
-        images.push_back(reflected(body, {ends[a], ends[b], ends[c]}));
+        found.push_back(reflection({ends[a], ends[b], ends[c]}));
       }
     }
   }
   std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t k = 0; k < images.size(); ++k) order.emplace_back(total_cost(images[k].ties), k);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    order.emplace_back(reflected_cost(ties, found[k]), k);
+  }
   std::sort(order.begin(), order.end());
-  std::vector<TiedBody> sorted;
-  for (const auto& entry : order) sorted.push_back(std::move(images[entry.second]));
+  std::vector<Reflection> sorted;
+  for (const auto& entry : order) sorted.push_back(found[entry.second]);
   return sorted;
 }
 
@@ -163,16 +196,14 @@ double Tie::cost() const {
   return std::min(r * r, limits(r));
 }
 
-double mirror_image_cost(const TiedBody& body, const PointsCost& points_cost, double enough) {
+bool has_mirror_image(const TiedBody& body, double limit, const PointsCost& points_cost) {
   constexpr std::size_t kSettled = 8;
-  double least = std::numeric_limits<double>::infinity();
-  if (body.ties.empty()) return least;
-  auto images = mirror_images(body);
-  if (images.size() > kSettled) images.resize(kSettled);
-  for (auto& image : images) {
-    least = std::min(least, settled_cost(std::move(image), points_cost, std::min(enough, least)));
-  }
-  return least;
+  if (body.ties.empty()) return false;
+  auto found = mirrors(body.ties);
+  if (found.size() > kSettled) found.resize(kSettled);
+  return std::any_of(found.begin(), found.end(), [&](const Reflection& mirror) {
+    return settles_below(limit, body, mirror, points_cost);
+  });
 }
 
 }  // namespace isotherm::geometry::detail

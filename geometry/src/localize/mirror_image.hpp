@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <vector>
 
 #include "localize/small_network.hpp"
@@ -30,12 +29,11 @@ struct TiedBody {
 /// What it costs, in chi-squared, that the points of a body are at these places.
 using PointsCost = std::function<double(const std::vector<Point>&)>;
 
-/// The least cost of a mirror image of the body among its surroundings: reflections in
-/// all lines (planes, in space) through d of the ends of ties (an even sample where there
-/// are many), the cheapest few moved as rigid bodies to where their ties fit best. What the
-/// places of the points cost is added unless the ties alone cost `enough`. Infinite for fewer
-/// than d ties. O(ties + points) a reflection.
-double mirror_image_cost(const TiedBody& body, const PointsCost& points_cost = {},
-                         double enough = std::numeric_limits<double>::infinity());
+/// Whether a mirror image of the body among its surroundings costs less than `limit`: reflections
+/// in lines (planes, in space) through d of the ends of ties (an even sample where there are
+/// many), the cheapest few moved as rigid bodies to where their ties fit best. What the places of
+/// the points cost is added unless the ties alone cost as much. Never for fewer than d ties.
+/// O(ties) a reflection, and O(points) for those that are cheap enough.
+bool has_mirror_image(const TiedBody& body, double limit, const PointsCost& points_cost = {});
 
 }  // namespace isotherm::geometry::detail
