@@ -233,7 +233,7 @@ class Localization {
     statuses_.resize(problem_.nodes, NodeStatus::not_placed);
     std::vector<bool> standing(problem_.ranges.size());
     for (std::size_t k = 0; k < standing.size(); ++k) {
-      standing[k] = !checks_[k].checked || result_.verdicts[k].verdict != Verdict::prune;
+      standing[k] = result_.verdicts[k].verdict != Verdict::prune;
     }
     const auto generic = detail::generic_determinacy(problem_, standing, anchors_);
     for (Index v = 0; v < problem_.nodes; ++v) {

@@ -42,6 +42,16 @@ double largest_error(const LocalizeResult& result, const Eigen::MatrixXd& truth)
   return (estimate - expected).colwise().norm().maxCoeff();
 }
 
+/// The points nearest to the corners of the unit square.
+std::vector<Index> corners(const Eigen::MatrixXd& points) {
+  std::vector<Index> nearest(4);
+  for (int k = 0; k < 4; ++k) {
+    const Eigen::Vector2d corner(k % 2, k / 2);
+    (points.colwise() - corner).colwise().norm().minCoeff(&nearest[k]);
+  }
+  return nearest;
+}
+
 class ExactNetworks : public testing::TestWithParam<std::tuple<int, int>> {};
 
 TEST_P(ExactNetworks, AreRecovered) {
@@ -258,6 +268,22 @@ TEST(Localize, AnIsolatedNodeIsNotConnected) {
     EXPECT_EQ(result.nodes[6], NodeStatus::not_connected);
     EXPECT_LT(largest_error(result, truth), 1e-9);
   }
+}
+
+TEST(Localize, FalseRangesDoNotConnectANode) {
+  // Four ranges to nodes that have no neighbour in common, with any lengths: heat tells.
+  auto simulated = simulate_network({.nodes = 200, .degree = 16.0, .noise = 0.02, .seed = 5});
+  auto& network = simulated.network;
+  auto& ranges = network.ranges;
+  const Index stray = ranges.front().from;
+  std::erase_if(ranges,
+                [&](const auto& range) { return range.from == stray || range.to == stray; });
+  const double variance = ranges.front().variance;
+  for (const Index other : corners(simulated.truth))
+    ranges.push_back({stray, other, 0.1, variance});
+  const auto result = localize(network);
+  EXPECT_EQ(result.nodes[stray], NodeStatus::not_connected);
+  EXPECT_GE(result.count(NodeStatus::localised), 150);
 }
 
 TEST(Localize, ASimplexIsUniqueButUnchecked) {
