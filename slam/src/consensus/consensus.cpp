@@ -27,15 +27,17 @@ ConsensusResult consensus(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
   const auto reduced = detail::reduce(graph, roles);
   const auto pairs = detail::near_pairs(reduced, options.window);
   // False loops among the accepted ones would widen the covariances, and let more in: the
-  // file is taken at its word as long as that explains what is accepted.
+  // file is taken at its word as long as that explains what is accepted, or proves more.
   std::optional<detail::Search<Pose>> search;
   search.emplace(reduced, pairs, options, false);
   search->run();
+  search->report(result);
   if (options.calibrate && search->asks_for_wider()) {
+    const auto proven = search->count_proven();
     search.emplace(reduced, pairs, options, true);
     search->run();
+    if (search->count_proven() >= proven) search->report(result);
   }
-  search->report(result);
   for (auto& info : result.details) {
     for (Index& loop : info.conflicts) loop = roles.candidates[loop];
   }

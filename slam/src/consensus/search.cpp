@@ -9,6 +9,7 @@
 #include "batches.hpp"
 #include "conflicts.hpp"
 #include "isotherm/base/error.hpp"
+#include "proven_loops.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -254,6 +255,13 @@ bool Search<Pose>::asks_for_wider() const {
 }
 
 template <class Pose>
+Index Search<Pose>::count_proven() {
+  estimate_.update(accepted_, calibration_.scale(), kStepsPerRound);
+  return detail::count_proven(graph_, estimate_, accepted_, calibration_.scale().loops,
+                              required_odds_);
+}
+
+template <class Pose>
 std::vector<double> Search<Pose>::probabilities() const {
   std::vector<double> probability = judge_.log_odds();
   for (double& p : probability) p = 1.0 / (1.0 + std::exp(-p));
@@ -293,6 +301,7 @@ void Search<Pose>::report(ConsensusResult& result) const {
     verdict.score = evidence.chi2;
     verdict.threshold = accepted_[k] ? judge_.drop_gate(loop) : judge_.refuting_gate(loop);
     if (accepted_[k]) {
+      verdict.verdict = Verdict::keep;
       verdict.stage = "round " + std::to_string(records_[k].round);
     } else if (judge_.refuted(loop)) {
       pruned[k] = true;

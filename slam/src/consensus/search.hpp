@@ -33,6 +33,9 @@ class Search {
   /// was.
   bool asks_for_wider() const;
 
+  /// How many of the accepted loops the others prove on the map that they make.
+  Index count_proven();
+
   /// Fills in everything in `result` but the verdicts' edges.
   void report(ConsensusResult& result) const;
 
