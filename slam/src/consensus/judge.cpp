@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "held_out.hpp"
 #include "isotherm/base/statistics.hpp"
 #include "prediction.hpp"
 
@@ -178,19 +179,10 @@ void Judge<Pose>::learn_gate() {
 
 template <class Pose>
 typename Judge<Pose>::Selection Judge<Pose>::held_by_themselves(double required_odds) const {
-  Selection accepted;
-  for (std::size_t k = 0; k < standings_.size(); ++k) {
-    if (accepted_[k] && graph_.loops[k].a != graph_.loops[k].b) {
-      accepted.push_back(static_cast<Index>(k));
-    }
-  }
-  const auto covariances = estimate_.relative_covariances(accepted);
   Selection suspects;
-  for (std::size_t k = 0; k < accepted.size(); ++k) {
-    const auto& link = graph_.loops[accepted[k]];
-    const Evidence evidence = weigh_held_out(link, estimate_.residual(link), covariances[k],
-                                             calibration_.scale().loops, map_);
-    if (log_odds(accepted[k], evidence) < required_odds) suspects.push_back(accepted[k]);
+  for (const auto& [loop, evidence] :
+       held_out(graph_, estimate_, accepted_, calibration_.scale().loops, map_)) {
+    if (log_odds(loop, evidence) < required_odds) suspects.push_back(loop);
   }
   return suspects;
 }

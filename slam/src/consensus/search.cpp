@@ -8,8 +8,8 @@
 
 #include "batches.hpp"
 #include "conflicts.hpp"
+#include "held_out.hpp"
 #include "isotherm/base/error.hpp"
-#include "proven_loops.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -254,11 +254,15 @@ bool Search<Pose>::asks_for_wider() const {
          calibration_.asks_for_wider(estimate_, accepted_, probabilities());
 }
 
+// On a map that false loops have drawn together to a point every loop says what all say: it
+// is no likelier than one anywhere on that map.
 template <class Pose>
-Index Search<Pose>::count_proven() {
+std::int64_t Search<Pose>::count_proven() {
   estimate_.update(accepted_, calibration_.scale(), kStepsPerRound);
-  return detail::count_proven(graph_, estimate_, accepted_, calibration_.scale().loops,
-                              required_odds_);
+  const MapVolume<Pose> map(estimate_.layout().poses);
+  const auto loops = held_out(graph_, estimate_, accepted_, calibration_.scale().loops, map);
+  return std::ranges::count_if(
+      loops, [this](const HeldOut& loop) { return loop.evidence.log_ratio >= required_odds_; });
 }
 
 template <class Pose>

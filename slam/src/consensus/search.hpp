@@ -33,8 +33,8 @@ class Search {
   /// was.
   bool asks_for_wider() const;
 
-  /// How many of the accepted loops the others prove on the map that they make.
-  Index count_proven();
+  /// How many of the accepted loops the others prove, held out, on the map that they make.
+  std::int64_t count_proven();
 
   /// Fills in everything in `result` but the verdicts' edges.
   void report(ConsensusResult& result) const;
