@@ -53,7 +53,8 @@ bool Judge<Pose>::crowded() const {
 
 template <class Pose>
 double Judge<Pose>::refuting_gate(Index loop) const {
-  return gate(loop) < widest_gate_ ? std::max(gate(loop), narrowest_refuting_gate_) : widest_gate_;
+  if (gate(loop) < widest_gate_) return std::max(gate(loop), narrowest_refuting_gate_);
+  return suspicious_ && evidence(loop).log_ratio < 0.0 ? narrowest_refuting_gate_ : widest_gate_;
 }
 
 template <class Pose>

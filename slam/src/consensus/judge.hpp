@@ -47,9 +47,13 @@ class Judge {
   /// Whether false loops crowd there, of whatever span.
   bool crowded() const;
 
-  /// Beyond it a loop that is not accepted is refuted. Between both gates it is in doubt:
-  /// few correct loops of Gaussian errors are beyond this one.
+  /// Beyond it a loop that is not accepted is refuted. Where false loops crowd it is in doubt
+  /// between both gates: few correct loops of Gaussian errors are beyond this one.
   double refuting_gate(Index loop) const;
+
+  /// Once nothing more can be proven: loops that are likelier false by their evidence are held
+  /// to the gate of where false ones crowd.
+  void suspect_unlikely() { suspicious_ = true; }
 
   /// How many times farther out than for Gaussian errors the accepted loops may lie.
   double tail_factor() const;
@@ -60,7 +64,9 @@ class Judge {
 
   const Evidence& evidence(Index loop) const { return standings_[loop].evidence; }
   bool connected(Index loop) const { return standings_[loop].connected; }
-  bool inside_gate(Index loop) const { return evidence(loop).chi2 <= gate(loop); }
+  bool inside_gate(Index loop) const {
+    return evidence(loop).chi2 <= std::min(gate(loop), refuting_gate(loop));
+  }
   bool refuted(Index loop) const {
     return !accepted_[loop] && evidence(loop).chi2 > refuting_gate(loop);
   }
@@ -116,8 +122,9 @@ class Judge {
   const std::vector<bool>& accepted_;
   double significance_;
   double widest_gate_;
-  double narrowest_refuting_gate_;  // where false loops crowd
+  double narrowest_refuting_gate_;  // where false loops crowd, or one looks like it
   GateBySpan gates_;
+  bool suspicious_ = false;
   Tail tail_;
   std::vector<Standing> standings_;
   PriorBySpan prior_;

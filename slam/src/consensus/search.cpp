@@ -58,6 +58,7 @@ void Search<Pose>::run() {
     accept_and_calibrate(kCalibrations);
   }
   take_likely_ = true;
+  judge_.suspect_unlikely();
   accept_and_calibrate(kLastCalibrations);
   for (int k = 0; k < kReconsiderations && reconsider();) ++k;
   readmit_together();

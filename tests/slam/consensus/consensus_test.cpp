@@ -192,8 +192,8 @@ TEST(Consensus, TakesAFileAtItsWordWhereThatExplainsTheLoops) {
 // With odometry 25 times as uncertain as stated a map shrunk to a point would explain all
 // the loops, nine in ten of which are false.
 TEST(Consensus, AMapThatProvesNothingIsNoExplanation) {
-  const auto made = simulate_grid3d({.poses = 40,
-                                     .measurements = {.loops = 20,
+  const auto made = simulate_grid3d({.poses = 60,
+                                     .measurements = {.loops = 30,
                                                       .odometry_sigma = 0.1,
                                                       .odometry_turn_sigma = 0.2,
                                                       .loop_sigma = 0.1,
@@ -203,8 +203,8 @@ TEST(Consensus, AMapThatProvesNothingIsNoExplanation) {
       corrupt(made.graph, made.truth, {.type = NoiseType::local, .fraction = 0.9, .seed = 2});
   const auto result = consensus(bad.graph, edge_roles(bad.graph));
   const auto metrics = evaluate_loops(result.verdicts, bad.labels);
-  EXPECT_GE(metrics.precision(), 0.95);
-  EXPECT_GE(metrics.recall(), 0.95);
+  EXPECT_GE(metrics.precision(), 0.9);
+  EXPECT_GE(metrics.recall(), 0.9);
 }
 
 TEST(Consensus, LearnsThatAFileIsUnderconfident) {
@@ -379,6 +379,27 @@ TEST(Consensus, LoopsThatSayTheSameAreReadmittedTogether) {
   graph.constraints.pop_back();
   graph.constraints.pop_back();
   EXPECT_EQ(kept(), 10) << "one alone stays refuted";
+}
+
+// Odometry is so wide that a loop at the very gate is likelier to be anywhere on the map.
+TEST(Consensus, WhatEvidenceSpeaksAgainstIsHeldToAStricterGate) {
+  const Index steps = 19;
+  PoseGraph<Pose2> graph;
+  for (Index v = 0; v <= steps; ++v) {
+    graph.ids.push_back(static_cast<std::uint64_t>(v));
+    graph.poses.push_back(Pose2(v, 0.0, 0.0));
+    if (v == 0) continue;
+    const Pose2::Tangent information(4.0, 4.0, 1e8);
+    graph.constraints.push_back({v - 1, v, Pose2(1.0, 0.0, 0.0), information.asDiagonal()});
+  }
+  for (const auto& [chi2, verdict] : {std::pair(17.0, Verdict::prune), {12.0, Verdict::keep}}) {
+    const Pose2 measured(steps, std::sqrt(chi2 * steps / 4.0), 0.0);
+    graph.constraints.push_back({0, steps, measured, 1e4 * Pose2::Matrix::Identity()});
+    const auto result = consensus(graph, edge_roles(graph), {.calibrate = false});
+    EXPECT_NEAR(result.verdicts.front().score, chi2, 0.01 * chi2);
+    EXPECT_EQ(result.verdicts.front().verdict, verdict) << chi2;
+    graph.constraints.pop_back();
+  }
 }
 
 TYPED_TEST(ConsensusOf, DegenerateGraphs) {
