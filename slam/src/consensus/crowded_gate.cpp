@@ -40,13 +40,14 @@ GateBySpan crowded_gate(const std::vector<SpannedChi2>& loops, double gate) {
   const OctaveCounts counts(std::move(all));
   const double valley = valley_below(gate, counts);
   const double below = counts.around(valley);
-  const double beyond = counts.around(gate * std::numbers::sqrt2);
+  const double just_beyond = gate * std::numbers::sqrt2;
+  const double beyond = counts.around(just_beyond);
   if (!more(beyond, below)) return gates;
   // A class with few loops leans on all of them.
   const double excess = (beyond - below) / (beyond + below);
   for (std::size_t k = 0; k < kSpanClasses; ++k) {
     const OctaveCounts of_class(std::move(classes[k]));
-    if (of_class.around(gate * std::numbers::sqrt2) + excess > of_class.around(valley)) {
+    if (of_class.around(just_beyond) + excess > of_class.around(valley)) {
       gates[k] = valley;
     }
   }

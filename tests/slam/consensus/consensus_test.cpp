@@ -24,6 +24,13 @@ using isotherm_test::random_loop_graph;
 using isotherm_test::random_tangent;
 using spectral::Verdict;
 
+/// What consensus makes of simulated loops with false ones among them.
+template <class Pose>
+LoopMetrics metrics_of(const Simulation<Pose>& made, const CorruptOptions& options) {
+  const auto bad = corrupt(made.graph, made.truth, options);
+  return evaluate_loops(consensus(bad.graph, edge_roles(bad.graph)).verdicts, bad.labels);
+}
+
 template <class Pose>
 class ConsensusOf : public testing::Test {};
 using Poses = testing::Types<Pose2, Pose3>;
@@ -188,7 +195,6 @@ TEST(Consensus, TakesAFileAtItsWordWhereThatExplainsTheLoops) {
   EXPECT_EQ(result.loop_scale, 1.0);
 }
 
-// A file may claim far less of its edges than they deserve.
 // With odometry 25 times as uncertain as stated a map shrunk to a point would explain all
 // the loops, nine in ten of which are false.
 TEST(Consensus, AMapThatProvesNothingIsNoExplanation) {
@@ -199,14 +205,12 @@ TEST(Consensus, AMapThatProvesNothingIsNoExplanation) {
                                                       .loop_sigma = 0.1,
                                                       .loop_turn_sigma = 0.2},
                                      .seed = 2});
-  const auto bad =
-      corrupt(made.graph, made.truth, {.type = NoiseType::local, .fraction = 0.9, .seed = 2});
-  const auto result = consensus(bad.graph, edge_roles(bad.graph));
-  const auto metrics = evaluate_loops(result.verdicts, bad.labels);
+  const auto metrics = metrics_of(made, {.type = NoiseType::local, .fraction = 0.9, .seed = 2});
   EXPECT_GE(metrics.precision(), 0.9);
   EXPECT_GE(metrics.recall(), 0.9);
 }
 
+// A file may claim far less of its edges than they deserve.
 TEST(Consensus, LearnsThatAFileIsUnderconfident) {
   auto city = simulate_city({.poses = 800, .measurements = {.loops = 300}, .seed = 3});
   for (auto& constraint : city.graph.constraints) constraint.information *= 1e-3;
@@ -268,10 +272,7 @@ TEST(Consensus, CopiedLoopsDoNotVouchForOdometry) {
 TEST(Consensus, FalseLoopsThatCrowdAroundTheGateDoNotPass) {
   auto city = simulate_city({.poses = 2000, .measurements = {.loops = 600}, .seed = 4});
   for (auto& constraint : city.graph.constraints) constraint.information *= 1e-3;
-  const auto bad =
-      corrupt(city.graph, city.truth, {.type = NoiseType::local, .fraction = 0.5, .seed = 4});
-  const auto result = consensus(bad.graph, edge_roles(bad.graph));
-  const auto metrics = evaluate_loops(result.verdicts, bad.labels);
+  const auto metrics = metrics_of(city, {.type = NoiseType::local, .fraction = 0.5, .seed = 4});
   EXPECT_GE(metrics.precision(), 0.995);
   EXPECT_GE(metrics.recall(), 0.995);
 }
@@ -459,11 +460,8 @@ TEST(Consensus, SameVerdictsForAnyNumberOfThreads) {
 TEST(Consensus, SurvivesDriftAndGroupsInACity) {
   const auto city = simulate_city({.poses = 1500, .measurements = {.drift = 20.0}, .seed = 1});
   for (const std::int64_t size : {5, 20}) {
-    const auto bad = corrupt(
-        city.graph, city.truth,
-        {.type = NoiseType::random_grouped, .fraction = 0.5, .group_size = size, .seed = 1});
-    const auto result = consensus(bad.graph, edge_roles(bad.graph));
-    const auto metrics = evaluate_loops(result.verdicts, bad.labels);
+    const auto metrics = metrics_of(
+        city, {.type = NoiseType::random_grouped, .fraction = 0.5, .group_size = size, .seed = 1});
     EXPECT_GE(metrics.precision(), 0.99);
     EXPECT_GE(metrics.recall(), 0.99);
   }
