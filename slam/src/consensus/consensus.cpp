@@ -36,7 +36,7 @@ ConsensusResult consensus(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
     const auto proven = search->count_proven();
     search.emplace(reduced, pairs, options, true);
     search->run();
-    if (search->count_proven() >= proven) search->report(result);
+    if (search->count_proven() > proven) search->report(result);
   }
   for (auto& info : result.details) {
     for (Index& loop : info.conflicts) loop = roles.candidates[loop];

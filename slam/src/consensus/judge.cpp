@@ -13,7 +13,7 @@ namespace {
 // deviations that an average one would need to meet the gate.
 constexpr double kMostTailFactor = 4.0;
 // Where false loops crowd around the gate, correct ones may be pruned with so many times
-// the probability, but at most with this one.
+// the probability, but at most with this one; so may those in doubt.
 constexpr double kCrowded = 25.0;
 constexpr double kMostLost = 0.01;
 
@@ -36,6 +36,9 @@ Judge<Pose>::Judge(const ReducedGraph<Pose>& graph, const Estimate<Pose>& estima
       widest_gate_(chi_squared_quantile(1.0 - significance, Pose::kDof)),
       narrowest_refuting_gate_(
           chi_squared_quantile(1.0 - lost_where_crowded(significance), Pose::kDof)),
+      doubtful_share_(chi_squared_quantile(1.0 - std::max(significance, kMostLost), Pose::kDof) /
+                      widest_gate_),
+      doubtful_(graph.loops.size(), false),
       tail_{widest_gate_, kMostTailFactor},
       standings_(graph.loops.size()) {
   gates_.fill(widest_gate_);
@@ -53,6 +56,7 @@ bool Judge<Pose>::crowded() const {
 
 template <class Pose>
 double Judge<Pose>::refuting_gate(Index loop) const {
+  if (doubtful_[loop]) return doubtful_share_ * widest_gate_;
   if (gate(loop) < widest_gate_) return std::max(gate(loop), narrowest_refuting_gate_);
   return suspicious_ && evidence(loop).log_ratio < 0.0 ? narrowest_refuting_gate_ : widest_gate_;
 }
@@ -64,7 +68,13 @@ double Judge<Pose>::tail_gate() const {
 
 template <class Pose>
 double Judge<Pose>::drop_gate(Index loop) const {
-  return std::max(gate(loop), tail_gate());
+  const double all = std::max(gate(loop), tail_gate());
+  return doubtful_[loop] ? doubtful_share_ * all : all;
+}
+
+template <class Pose>
+void Judge<Pose>::doubt(const Selection& loops) {
+  for (const Index k : loops) doubtful_[k] = true;
 }
 
 template <class Pose>

@@ -55,6 +55,9 @@ class Judge {
   /// to the gate of where false ones crowd.
   void suspect_unlikely() { suspicious_ = true; }
 
+  /// From now on holds `loops` to a gate that all but one in a hundred correct ones meet.
+  void doubt(const Selection& loops);
+
   /// How many times farther out than for Gaussian errors the accepted loops may lie.
   double tail_factor() const;
 
@@ -124,7 +127,9 @@ class Judge {
   double widest_gate_;
   double narrowest_refuting_gate_;  // where false loops crowd, or one looks like it
   GateBySpan gates_;
+  double doubtful_share_;  // of a gate, for loops in doubt
   bool suspicious_ = false;
+  std::vector<bool> doubtful_;
   Tail tail_;
   std::vector<Standing> standings_;
   PriorBySpan prior_;

@@ -2,12 +2,14 @@
 #include <utility>
 
 #include "batches.hpp"
+#include "log_odds.hpp"
 #include "search.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
 
 constexpr double kNearlyInside = 2.0;  // times the gate
+constexpr double kLikely = 0.99;       // that the group is true; the map it ends with tells more
 
 // Whether every loop of `few` is one of `many`.
 bool contains(const std::vector<bool>& many, const std::vector<bool>& few) {
@@ -29,7 +31,8 @@ void Search<Pose>::readmit_together() {
       near.push_back(loop);
     }
   }
-  near = strongest_clusters(support_, near, judge_.log_odds(), agreement_, required_odds_);
+  near = strongest_clusters(support_, near, judge_.log_odds(), agreement_,
+                            std::min(required_odds_, log_odds_of(kLikely)));
   bool any = false;
   for (const Selection& group : agreeing_groups(support_, near, accepted_.size())) {
     if (group.size() < 2) continue;

@@ -10,6 +10,7 @@
 #include "conflicts.hpp"
 #include "held_out.hpp"
 #include "isotherm/base/error.hpp"
+#include "log_odds.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -24,8 +25,6 @@ constexpr int kReconsiderations = 3;
 constexpr int kMostDoublings = 4;  // of odometry's covariance, where it refutes every loop
 constexpr Index kFewParts = 10;
 constexpr double kBridgeProbability = 0.95;  // of a loop of which only its span is known
-
-double log_odds_of(double probability) { return std::log(probability / (1.0 - probability)); }
 
 }  // namespace
 
@@ -62,6 +61,7 @@ void Search<Pose>::run() {
   accept_and_calibrate(kLastCalibrations);
   for (int k = 0; k < kReconsiderations && reconsider();) ++k;
   readmit_together();
+  doubt_company();
 }
 
 template <class Pose>

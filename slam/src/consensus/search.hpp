@@ -65,6 +65,7 @@ class Search {
   std::size_t witnesses(const std::vector<Selection>& groups, std::size_t tried);
   bool reconsider();
   void readmit_together();
+  void doubt_company();
   std::size_t freed_without(const Selection& loops);
   Snapshot snapshot() const;
   void restore(Snapshot before);
