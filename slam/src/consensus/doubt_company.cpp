@@ -27,7 +27,6 @@ void Search<Pose>::doubt_company() {
     if (majority[k] >= kMajority) doubtful.push_back(static_cast<Index>(k));
   }
   judge_.doubt(doubtful);
-  accept_while_possible();
 }
 
 template void Search<Pose2>::doubt_company();

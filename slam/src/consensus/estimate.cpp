@@ -31,9 +31,7 @@ Estimate<Pose>::Estimate(const ReducedGraph<Pose>& graph)
 template <class Pose>
 void Estimate<Pose>::update(const std::vector<bool>& accepted, const CovarianceScale& scale,
                             int max_steps) {
-  join_components(accepted);
-  hold_one_pose_each();
-  lay_out(accepted);
+  if (!factor_ || accepted != laid_out_for_) lay_out(accepted);
   for (int step = 0;; ++step) {
     const Eigen::VectorXd gradient = linearise(scale);
     if (!factor_->factorise()) {
@@ -52,6 +50,7 @@ template <class Pose>
 void Estimate<Pose>::restore(Layout layout) {
   poses_ = std::move(layout.poses);
   component_ = std::move(layout.component);
+  factor_.reset();
 }
 
 template <class Pose>
@@ -146,6 +145,9 @@ void Estimate<Pose>::hold_one_pose_each() {
 
 template <class Pose>
 void Estimate<Pose>::lay_out(const std::vector<bool>& accepted) {
+  join_components(accepted);
+  hold_one_pose_each();
+  laid_out_for_ = accepted;
   active_loops_.clear();
   pair_of_.clear();
   std::vector<std::pair<Index, Index>> pairs;

@@ -75,6 +75,7 @@ class Estimate {
   Index component_count_ = 0;
   std::vector<Index> variable_;  // a node's block, or -1 where it is held
   Index variable_count_ = 0;
+  std::vector<bool> laid_out_for_;  // loops that the rest belongs to
   std::vector<Index> active_loops_;
   std::vector<std::ptrdiff_t> pair_of_;  // steps, then active loops; -1 without a block
   std::unique_ptr<BlockCholesky> factor_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -62,6 +63,8 @@ void Search<Pose>::run() {
   for (int k = 0; k < kReconsiderations && reconsider();) ++k;
   readmit_together();
   doubt_company();
+  reach_ = std::numeric_limits<double>::infinity();
+  accept_while_possible();
 }
 
 template <class Pose>
@@ -105,14 +108,17 @@ void Search<Pose>::accept_while_possible() {
   }
 }
 
-// Bounds hold as long as poses move little. At the end every loop that was refuted
-// by a bound is judged afresh; true if that lets one be accepted after all.
+// Bounds hold as long as poses move little. Loops within reach that were refuted by a bound
+// are judged afresh; true if that lets one be accepted after all.
 template <class Pose>
 bool Search<Pose>::readmit() {
   Selection out;
   for (std::size_t k = 0; k < accepted_.size(); ++k) {
     const auto loop = static_cast<Index>(k);
-    if (judge_.connected(loop) && judge_.refuted(loop)) out.push_back(loop);
+    if (judge_.connected(loop) && judge_.refuted(loop) &&
+        judge_.evidence(loop).chi2 <= reach_ * judge_.refuting_gate(loop)) {
+      out.push_back(loop);
+    }
   }
   tell_progress();
   judge_.weigh_afresh(out);
