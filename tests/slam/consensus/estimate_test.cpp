@@ -134,6 +134,32 @@ TYPED_TEST(EstimateOf, LoopsMovePartsTogether) {
   for (const auto& loop : reduced.loops) EXPECT_LT(estimate.residual(loop).norm(), 1e-9);
 }
 
+// Where the loops stay the same, only values are computed anew.
+TYPED_TEST(EstimateOf, CovariancesFollowTheScaleAndWhatIsTakenBack) {
+  using Pose = TypeParam;
+  Random random(15);
+  const auto made = random_loop_graph<Pose>(random, 40, 8, 0.1, 1e6);
+  const auto reduced = reduce(made.graph, edge_roles(made.graph));
+  const std::vector<Index> asked = {0, 3, 7};
+  Estimate<Pose> estimate(reduced);
+  const auto covariances = [&](const std::vector<bool>& accepted, const CovarianceScale& scale) {
+    estimate.update(accepted, scale, 20);
+    return estimate.relative_covariances(asked);
+  };
+  std::vector<bool> few(reduced.loops.size(), false);
+  few[2] = few[5] = true;
+  const auto before = covariances(few, {1.0, 1.0});
+  const auto layout = estimate.layout();
+  const auto doubled = covariances(few, {2.0, 2.0});
+  covariances(std::vector<bool>(reduced.loops.size(), true), {1.0, 1.0});
+  estimate.restore(layout);
+  const auto after = covariances(few, {1.0, 1.0});
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    EXPECT_LT((doubled[k] - 2.0 * before[k]).norm(), 1e-6 * before[k].norm());
+    EXPECT_LT((after[k] - before[k]).norm(), 1e-6 * before[k].norm());
+  }
+}
+
 TYPED_TEST(EstimateOf, TrustedEdgesBesideTheChainAreUsed) {
   using Pose = TypeParam;
   Random random(14);
