@@ -112,7 +112,8 @@ RangeNetwork read_librsf(TextReader& text, ReadReport& report) {
     measurement.variance = variance_field(text);
     const double x = text.number("the x of the anchor");
     const double y = text.number("the y of the anchor");
-    const std::string anchor = "L" + std::string(text.word("the id of the anchor"));
+    std::string anchor = "L";
+    anchor += text.word("the id of the anchor");
     while (!text.at_line_end()) text.number("a signal strength");
     measurement.from = builder.node(std::to_string(builder.range_count()));
     measurement.to = builder.node(anchor);

@@ -26,8 +26,8 @@ class PointGrid {
   /// Calls visit(number, point) for all points at most `radius` away, and perhaps some more.
   template <class Visit>
   void visit_near(const Point& place, double radius, const Visit& visit) const {
-    const Cell low = cell_of(place - Point::Constant(place.size(), radius));
-    const Cell high = cell_of(place + Point::Constant(place.size(), radius));
+    const Cell low = cell_of(place, -radius);
+    const Cell high = cell_of(place, radius);
     Cell at = low;
     for (at[0] = low[0]; at[0] <= high[0]; ++at[0]) {
       for (at[1] = low[1]; at[1] <= high[1]; ++at[1]) {
@@ -43,12 +43,14 @@ class PointGrid {
  private:
   using Cell = std::array<std::int64_t, 3>;
 
-  Cell cell_of(const Point& point) const {
+  // Of the point moved by `shift` along every axis.
+  Cell cell_of(const Point& point, double shift = 0.0) const {
     // Far enough for any map, near enough for a key.
     constexpr double kMost = 1e6;
     Cell cell = {0, 0, 0};
     for (Eigen::Index i = 0; i < point.size(); ++i) {
-      cell[i] = static_cast<std::int64_t>(std::clamp(std::floor(point[i] / cell_), -kMost, kMost));
+      const double number = std::floor((point[i] + shift) / cell_);
+      cell[i] = static_cast<std::int64_t>(std::clamp(number, -kMost, kMost));
     }
     return cell;
   }
