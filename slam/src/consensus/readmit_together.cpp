@@ -8,12 +8,22 @@
 namespace isotherm::slam::detail {
 namespace {
 
+constexpr std::size_t kMostTrials = 30;
 constexpr double kNearlyInside = 2.0;  // times the gate
 constexpr double kLikely = 0.99;       // that the group is true; the map it ends with tells more
 
 // Whether every loop of `few` is one of `many`.
 bool contains(const std::vector<bool>& many, const std::vector<bool>& few) {
   return std::ranges::equal(few, many, [](bool a, bool b) { return !a || b; });
+}
+
+// The largest, where there are too many to try all.
+void keep_trials(std::vector<std::vector<Index>>& groups) {
+  std::erase_if(groups, [](const auto& group) { return group.size() < 2; });
+  if (groups.size() <= kMostTrials) return;
+  std::ranges::stable_sort(groups,
+                           [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  groups.resize(kMostTrials);
 }
 
 }  // namespace
@@ -34,8 +44,9 @@ void Search<Pose>::readmit_together() {
   near = strongest_clusters(support_, near, judge_.log_odds(), agreement_,
                             std::min(required_odds_, log_odds_of(kLikely)));
   bool any = false;
-  for (const Selection& group : agreeing_groups(support_, near, accepted_.size())) {
-    if (group.size() < 2) continue;
+  auto groups = agreeing_groups(support_, near, accepted_.size());
+  keep_trials(groups);
+  for (const Selection& group : groups) {
     Snapshot before = snapshot();
     accept({"together", group});
     settle();

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -18,10 +17,11 @@ namespace {
 
 using spectral::Verdict;
 
-constexpr int kStepsPerRound = 6;     // of Gauss-Newton
-constexpr int kMostDrops = 3;         // a loop dropped so often is not tried again
-constexpr int kCalibrations = 6;      // of the covariance scales, on proven loops
-constexpr int kLastCalibrations = 1;  // and with the likely ones
+constexpr int kStepsPerRound = 6;      // of Gauss-Newton
+constexpr double kWithinReach = 10.0;  // times the gate
+constexpr int kMostDrops = 3;          // a loop dropped so often is not tried again
+constexpr int kCalibrations = 6;       // of the covariance scales, on proven loops
+constexpr int kLastCalibrations = 1;   // and with the likely ones
 constexpr int kReconsiderations = 3;
 constexpr int kMostDoublings = 4;  // of odometry's covariance, where it refutes every loop
 constexpr Index kFewParts = 10;
@@ -63,7 +63,7 @@ void Search<Pose>::run() {
   for (int k = 0; k < kReconsiderations && reconsider();) ++k;
   readmit_together();
   doubt_company();
-  reach_ = std::numeric_limits<double>::infinity();
+  closing_ = true;
   accept_while_possible();
 }
 
@@ -103,20 +103,20 @@ void Search<Pose>::accept_while_possible() {
       return;
     }
     if (accept(next_batch()) || readmit()) continue;
-    if ((take_likely_ || few_parts()) && join_on_trial()) continue;
+    if ((take_likely_ || few_parts()) && !closing_ && join_on_trial()) continue;
     if (!few_parts() || !accept(clusters_of(in_question(), judge_.log_odds()))) return;
   }
 }
 
-// Bounds hold as long as poses move little. Loops within reach that were refuted by a bound
-// are judged afresh; true if that lets one be accepted after all.
+// Bounds hold as long as poses move little. Loops that were refuted by one are judged afresh,
+// those far beyond it only at the end; true if that lets one be accepted after all.
 template <class Pose>
 bool Search<Pose>::readmit() {
   Selection out;
   for (std::size_t k = 0; k < accepted_.size(); ++k) {
     const auto loop = static_cast<Index>(k);
     if (judge_.connected(loop) && judge_.refuted(loop) &&
-        judge_.evidence(loop).chi2 <= reach_ * judge_.refuting_gate(loop)) {
+        (closing_ || judge_.evidence(loop).chi2 <= kWithinReach * judge_.refuting_gate(loop))) {
       out.push_back(loop);
     }
   }

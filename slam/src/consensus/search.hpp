@@ -103,7 +103,7 @@ class Search {
   std::vector<ConsensusRound> rounds_;
   Agreement agreement_;
   bool take_likely_ = false;  // accept unproven loops that are more likely true than not
-  double reach_ = 10.0;       // gates beyond which bounds need not be looked into
+  bool closing_ = false;      // tries nothing new, but looks at every loop once more
   bool settled_ = true;
 };
 
