@@ -532,13 +532,11 @@ Written by `benchmarks/networks.py`:
 measured piece by piece (`--sizes`, `--budget`) in builds of the preset `release`, on two cores
 that had other work to do: seconds are wall-clock and say little. RMSD counts the nodes that
 a method places, anchors left out, in sides of the unit square. Sizes, rows and cells that are
-missing were not measured. Part of the networks was measured before the last change of what
-is found, by which torn maps are drawn together for a smaller gain; those of 1,000 nodes with degree
-12, 5 or 10 % of noise and none or false wrong ranges after it, and all of 10,000 nodes with biased
-ranges. The networks of 100 nodes are older still: of 24 of them measured again (5 and 10 % noise,
-20 % of the ranges false or biased) each had the same number of nodes localised and a ratio within
-0.01 of the one before. Later changes concern time, and what is said of nodes without a place:
-eight networks compared, of 100 to 3,000 nodes, had the same positions and verdicts to the last bit.
+missing were not measured. The networks of 100 and 1,000 nodes are of one build, and those of
+10,000 nodes with biased ranges of the same or of one that differs in time only, as eight networks
+show that had the same positions and verdicts to the last bit. Of those of 10,000 nodes with none or
+false wrong ranges most are older by one change, by which torn maps are drawn together for a smaller
+gain.
 
 ## Simulated networks
 
