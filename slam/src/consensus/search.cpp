@@ -264,9 +264,8 @@ bool Search<Pose>::asks_for_wider() const {
 // On a map that false loops have drawn together to a point every loop says what all say: it
 // is no likelier than one anywhere on that map.
 template <class Pose>
-std::int64_t Search<Pose>::count_proven() {
-  estimate_.update(accepted_, calibration_.scale(), kStepsPerRound);
-  const MapVolume<Pose> map(estimate_.layout().poses);
+std::int64_t Search<Pose>::count_proven() const {
+  const MapVolume<Pose> map(estimate_.poses());
   const auto loops = held_out(graph_, estimate_, accepted_, calibration_.scale().loops, map);
   return std::ranges::count_if(
       loops, [this](const HeldOut& loop) { return loop.evidence.log_ratio >= required_odds_; });

@@ -34,7 +34,7 @@ class Search {
   bool asks_for_wider() const;
 
   /// How many of the accepted loops the others prove, held out, on the map that they make.
-  std::int64_t count_proven();
+  std::int64_t count_proven() const;
 
   /// Fills in everything in `result` but the verdicts' edges.
   void report(ConsensusResult& result) const;

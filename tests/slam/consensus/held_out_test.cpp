@@ -24,7 +24,7 @@ std::int64_t proven(const PoseGraph<Pose>& graph) {
   const std::vector<bool> accepted(reduced.loops.size(), true);
   Estimate<Pose> estimate(reduced);
   estimate.update(accepted, {}, kSteps);
-  const MapVolume<Pose> map(estimate.layout().poses);
+  const MapVolume<Pose> map(estimate.poses());
   return std::ranges::count_if(
       held_out(reduced, estimate, accepted, 1.0, map),
       [](const HeldOut& loop) { return loop.evidence.log_ratio >= kRequired; });
