@@ -60,6 +60,11 @@ std::vector<std::vector<Index>> agreeing_groups(const MutualSupport& support,
   return group_of_root;
 }
 
+void largest_first(std::vector<std::vector<Index>>& groups) {
+  std::ranges::stable_sort(groups,
+                           [](const auto& a, const auto& b) { return a.size() > b.size(); });
+}
+
 std::vector<Index> strongest_clusters(const MutualSupport& support,
                                       const std::vector<Index>& eligible,
                                       const std::vector<double>& log_odds,

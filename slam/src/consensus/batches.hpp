@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "agreement.hpp"
@@ -19,6 +20,12 @@ std::vector<Index> most_certain_third(std::vector<Index> passing,
 std::vector<std::vector<Index>> agreeing_groups(const MutualSupport& support,
                                                 const std::vector<Index>& eligible,
                                                 std::size_t loop_count);
+
+/// Groups tried at most where each is accepted on trial, at the cost of an estimate.
+inline constexpr std::size_t kMostTrials = 30;
+
+/// Puts the largest groups first; those of one size keep their order.
+void largest_first(std::vector<std::vector<Index>>& groups);
 
 /// The strongest groups of loops that confirm each other, among the `eligible` ones.
 ///

@@ -7,7 +7,6 @@
 namespace isotherm::slam::detail {
 namespace {
 
-constexpr std::size_t kMostTrials = 30;
 // So many groups elsewhere must be proven: of hundreds of false loops one or the other
 // fits any way of joining two parts.
 constexpr std::size_t kFewestWitnesses = 3;
@@ -26,8 +25,7 @@ bool Search<Pose>::join_on_trial() {
   }
   auto groups = agreeing_groups(support_, apart, accepted_.size());
   if (groups.size() <= kFewestWitnesses) return false;
-  std::stable_sort(groups.begin(), groups.end(),
-                   [](const Selection& a, const Selection& b) { return a.size() > b.size(); });
+  largest_first(groups);
   const Snapshot before = snapshot();
   std::size_t most = 0;
   std::size_t best = 0;

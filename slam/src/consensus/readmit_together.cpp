@@ -8,7 +8,6 @@
 namespace isotherm::slam::detail {
 namespace {
 
-constexpr std::size_t kMostTrials = 30;
 constexpr double kNearlyInside = 2.0;  // times the gate
 constexpr double kLikely = 0.99;       // that the group is true; the map it ends with tells more
 
@@ -21,8 +20,7 @@ bool contains(const std::vector<bool>& many, const std::vector<bool>& few) {
 void keep_trials(std::vector<std::vector<Index>>& groups) {
   std::erase_if(groups, [](const auto& group) { return group.size() < 2; });
   if (groups.size() <= kMostTrials) return;
-  std::ranges::stable_sort(groups,
-                           [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  largest_first(groups);
   groups.resize(kMostTrials);
 }
 
