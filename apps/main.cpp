@@ -9,7 +9,7 @@
 #include "help_formatter.hpp"
 #include "isotherm/base/error.hpp"
 #include "serial_openmp.hpp"
-#include "verbs.hpp"
+#include "verbs/verbs.hpp"
 
 namespace isotherm::apps {
 namespace {

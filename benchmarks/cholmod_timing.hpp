@@ -5,7 +5,7 @@
 
 #include <cholmod.h>
 
-#include "isotherm/spectral/weighted_graph.hpp"
+#include "isotherm/spectral/graph/weighted_graph.hpp"
 
 /// One factorisation as a user of CHOLMOD would do it, for comparison.
 namespace isotherm_bench {

@@ -6,7 +6,7 @@
 #include <benchmark/benchmark.h>
 
 #include "isotherm/base/random.hpp"
-#include "isotherm/geometry/lap_line.hpp"
+#include "isotherm/geometry/curves/lap_line.hpp"
 
 namespace {
 

@@ -15,12 +15,12 @@
 
 #include "cholmod_timing.hpp"
 #include "isotherm/base/text_writer.hpp"
-#include "isotherm/slam/induce.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
-#include "isotherm/slam/simulate.hpp"
-#include "isotherm/spectral/effective_resistance.hpp"
-#include "isotherm/spectral/eigen_decomposition.hpp"
-#include "isotherm/spectral/heat_distance.hpp"
+#include "isotherm/slam/prune/induce.hpp"
+#include "isotherm/slam/simulate/simulate.hpp"
+#include "isotherm/spectral/eigen/eigen_decomposition.hpp"
+#include "isotherm/spectral/heat/heat_distance.hpp"
+#include "isotherm/spectral/resistance/effective_resistance.hpp"
 
 namespace {
 

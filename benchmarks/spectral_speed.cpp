@@ -3,12 +3,12 @@
 #include <benchmark/benchmark.h>
 
 #include "cholmod_timing.hpp"
-#include "isotherm/slam/induce.hpp"
-#include "isotherm/slam/simulate.hpp"
-#include "isotherm/spectral/effective_resistance.hpp"
-#include "isotherm/spectral/eigen_decomposition.hpp"
-#include "isotherm/spectral/heat_affinity.hpp"
-#include "isotherm/spectral/heat_distance.hpp"
+#include "isotherm/slam/prune/induce.hpp"
+#include "isotherm/slam/simulate/simulate.hpp"
+#include "isotherm/spectral/eigen/eigen_decomposition.hpp"
+#include "isotherm/spectral/heat/heat_affinity.hpp"
+#include "isotherm/spectral/heat/heat_distance.hpp"
+#include "isotherm/spectral/resistance/effective_resistance.hpp"
 
 namespace {
 

@@ -1,8 +1,6 @@
 # One way to define a library of ours, so that flags, include roots, install
 # rules and the exported name are the same for every layer.
 
-find_package(Threads REQUIRED)
-
 # Options every target of the project is compiled with; never exported.
 function(isotherm_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)

@@ -2,10 +2,10 @@
 // prune it, and compare the verdicts with the truth.
 #include <cstdio>
 
-#include <isotherm/slam/corrupt.hpp>
-#include <isotherm/slam/evaluate_loops.hpp>
-#include <isotherm/slam/prune.hpp>
-#include <isotherm/slam/simulate.hpp>
+#include <isotherm/slam/evaluate/evaluate_loops.hpp>
+#include <isotherm/slam/prune/prune.hpp>
+#include <isotherm/slam/simulate/corrupt.hpp>
+#include <isotherm/slam/simulate/simulate.hpp>
 
 int main() {
   using namespace isotherm::slam;

@@ -4,11 +4,11 @@
 #include <cstdio>
 #include <vector>
 
-#include <isotherm/geometry/localize.hpp>
-#include <isotherm/geometry/simulate_network.hpp>
+#include <isotherm/network/localize/localize.hpp>
+#include <isotherm/network/simulate/simulate_network.hpp>
 
 int main() {
-  using namespace isotherm::geometry;
+  using namespace isotherm::network;
 
   const auto simulated = simulate_network(
       {.nodes = 150, .anchors = 8, .degree = 20.0, .noise = 0.02, .false_fraction = 0.1});

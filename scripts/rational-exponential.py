@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes spectral/src/rational_exponential_table.hpp: near-best rational
+"""Makes spectral/src/heat/rational_exponential_table.hpp: near-best rational
 approximations of exp(-x) on [0, infinity) in partial fractions.
 
 Poles by the Caratheodory-Fejer method (Trefethen, Weideman and Schmelzer,
@@ -7,7 +7,7 @@ Poles by the Caratheodory-Fejer method (Trefethen, Weideman and Schmelzer,
 minimax fit for those poles (Lawson's iteration), errors measured on a fine
 grid. Needs numpy.
 
-usage: scripts/rational-exponential.py > spectral/src/rational_exponential_table.hpp
+usage: scripts/rational-exponential.py > spectral/src/heat/rational_exponential_table.hpp
 """
 import numpy as np
 

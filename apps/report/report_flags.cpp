@@ -1,11 +1,11 @@
-#include "report_flags.hpp"
+#include "report/report_flags.hpp"
 
 #include <filesystem>
 
 #include "isotherm/base/text_writer.hpp"
-#include "report_json.hpp"
-#include "report_page.hpp"
-#include "report_svg.hpp"
+#include "report/report_json.hpp"
+#include "report/report_page.hpp"
+#include "report/report_svg.hpp"
 
 namespace isotherm::apps {
 namespace {

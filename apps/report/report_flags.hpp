@@ -3,7 +3,7 @@
 #include <string>
 
 #include "command.hpp"
-#include "report.hpp"
+#include "report/report.hpp"
 
 namespace isotherm::apps {
 

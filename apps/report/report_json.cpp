@@ -1,10 +1,10 @@
-#include "report_json.hpp"
+#include "report/report_json.hpp"
 
 #include <bit>
 #include <cmath>
 #include <span>
 
-#include "base64.hpp"
+#include "report/base64.hpp"
 
 namespace isotherm::apps {
 namespace {

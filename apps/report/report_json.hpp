@@ -1,6 +1,6 @@
 #pragma once
 
-#include "report.hpp"
+#include "report/report.hpp"
 
 namespace isotherm::apps {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "report.hpp"
+#include "report/report.hpp"
 
 namespace isotherm::apps {
 

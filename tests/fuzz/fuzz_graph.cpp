@@ -1,4 +1,4 @@
-#include "isotherm/spectral/graph_file.hpp"
+#include "isotherm/spectral/graph/graph_file.hpp"
 #include "reader.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,4 +1,4 @@
-#include "isotherm/geometry/point_cloud.hpp"
+#include "isotherm/geometry/points/point_cloud.hpp"
 #include "reader.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

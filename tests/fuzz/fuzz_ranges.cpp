@@ -1,8 +1,8 @@
-#include "isotherm/geometry/range_file.hpp"
+#include "isotherm/network/io/range_file.hpp"
 #include "reader.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return read_untrusted(data, size, [](auto& reader, const auto& options) {
-    isotherm::geometry::read_ranges(reader, options);
+    isotherm::network::read_ranges(reader, options);
   });
 }

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "isotherm/geometry/polyline.hpp"
+#include "isotherm/geometry/curves/polyline.hpp"
 
 namespace isotherm::geometry::curves {
 

@@ -6,15 +6,19 @@
 cmake_minimum_required(VERSION 3.25)
 
 # What each layer may include: other layers' headers, and private third parties.
-set(layers spectral geometry slam apps)
+set(layers base spectral geometry network slam apps)
+set(base_layers base)
+set(base_private Eigen tbb oneapi boost fast_float zlib)
 set(spectral_layers base spectral)
-set(spectral_private Eigen Spectra suitesparse cholmod tbb oneapi boost fast_float zlib)
+set(spectral_private Eigen Spectra suitesparse cholmod boost)
 set(geometry_layers base spectral geometry)
-set(geometry_private Eigen CGAL boost nanoflann fast_float)
-set(slam_layers base spectral geometry slam)
-set(slam_private Eigen ceres nanoflann suitesparse cholmod tbb oneapi)
-set(apps_layers base spectral geometry slam)
-set(apps_private Eigen CLI nlohmann fmt spdlog)
+set(geometry_private Eigen CGAL boost nanoflann)
+set(network_layers base spectral geometry network)
+set(network_private Eigen suitesparse cholmod)
+set(slam_layers base spectral geometry network slam)
+set(slam_private Eigen nanoflann)
+set(apps_layers base spectral geometry network slam)
+set(apps_private Eigen CLI nlohmann fmt)
 
 # Lists the files of a kind in a layer.
 function(layer_files layer kind result)

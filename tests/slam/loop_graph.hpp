@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "isotherm/base/random.hpp"
-#include "isotherm/slam/pose_graph.hpp"
+#include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm_test/random_graphs.hpp"
 
 namespace isotherm_test {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "isotherm/slam/corrupt.hpp"
-#include "isotherm/slam/simulate.hpp"
+#include "isotherm/slam/simulate/corrupt.hpp"
+#include "isotherm/slam/simulate/simulate.hpp"
 
 namespace isotherm::slam {
 namespace {

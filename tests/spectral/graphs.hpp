@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "isotherm/base/random.hpp"
-#include "isotherm/spectral/weighted_graph.hpp"
+#include "isotherm/spectral/graph/weighted_graph.hpp"
 
 /// Graphs the spectral tests are run on.
 namespace isotherm_test {

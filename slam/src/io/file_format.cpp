@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "isotherm/geometry/range_rows.hpp"
+#include "isotherm/network/io/range_rows.hpp"
 
 namespace isotherm::slam {
 namespace {
@@ -82,14 +82,14 @@ FileFormat format_of_line(std::string_view line) {
 
 // Rows of ranges without tags or names.
 FileFormat format_of_rows(std::string_view text) {
-  switch (geometry::detect_range_rows(text)) {
-    case geometry::RangeRows::intervals:
+  switch (network::detect_range_rows(text)) {
+    case network::RangeRows::intervals:
       return FileFormat::intervals;
-    case geometry::RangeRows::beacons:
+    case network::RangeRows::beacons:
       return FileFormat::beacons;
-    case geometry::RangeRows::flight_times:
+    case network::RangeRows::flight_times:
       return FileFormat::flight_times;
-    case geometry::RangeRows::none:
+    case network::RangeRows::none:
       break;
   }
   return FileFormat::unknown;

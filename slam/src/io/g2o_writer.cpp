@@ -1,8 +1,8 @@
 #include <string>
 
+#include "io/record_writer.hpp"
 #include "isotherm/base/text_writer.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
-#include "record_writer.hpp"
 
 namespace isotherm::slam {
 namespace {

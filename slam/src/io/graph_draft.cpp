@@ -1,12 +1,12 @@
-#include "graph_draft.hpp"
+#include "io/graph_draft.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <optional>
 #include <string>
 
-#include "information_check.hpp"
-#include "isotherm/spectral/weighted_graph.hpp"
+#include "io/information_check.hpp"
+#include "isotherm/spectral/graph/weighted_graph.hpp"
 
 namespace isotherm::slam {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "isotherm/base/read_report.hpp"
-#include "isotherm/slam/pose_graph.hpp"
+#include "isotherm/slam/graph/pose_graph.hpp"
 
 namespace isotherm::slam {
 

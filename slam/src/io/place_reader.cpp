@@ -1,4 +1,4 @@
-#include "place_reader.hpp"
+#include "io/place_reader.hpp"
 
 #include <algorithm>
 #include <cmath>

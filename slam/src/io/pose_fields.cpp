@@ -1,4 +1,4 @@
-#include "pose_fields.hpp"
+#include "io/pose_fields.hpp"
 
 #include <cmath>
 #include <limits>

@@ -2,7 +2,7 @@
 
 #include "isotherm/base/read_report.hpp"
 #include "isotherm/base/text_reader.hpp"
-#include "isotherm/slam/pose.hpp"
+#include "isotherm/slam/graph/pose.hpp"
 
 namespace isotherm::slam {
 

@@ -5,12 +5,12 @@
 
 #include <Eigen/LU>
 
-#include "graph_draft.hpp"
-#include "information_check.hpp"
+#include "io/graph_draft.hpp"
+#include "io/information_check.hpp"
+#include "io/place_reader.hpp"
+#include "io/pose_fields.hpp"
 #include "isotherm/slam/io/file_format.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
-#include "place_reader.hpp"
-#include "pose_fields.hpp"
 
 namespace isotherm::slam {
 namespace {

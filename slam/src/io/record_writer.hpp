@@ -4,8 +4,9 @@
 #include <string>
 #include <string_view>
 
+#include "isotherm/base/error.hpp"
 #include "isotherm/base/text_writer.hpp"
-#include "isotherm/slam/pose_graph.hpp"
+#include "isotherm/slam/graph/pose_graph.hpp"
 
 namespace isotherm::slam {
 

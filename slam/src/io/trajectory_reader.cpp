@@ -3,10 +3,10 @@
 #include <string>
 #include <utility>
 
+#include "io/pose_fields.hpp"
 #include "isotherm/base/text_writer.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm/slam/io/trajectory_file.hpp"
-#include "pose_fields.hpp"
 
 namespace isotherm::slam {
 namespace {

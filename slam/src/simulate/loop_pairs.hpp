@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "isotherm/base/random.hpp"
-#include "isotherm/slam/pose_graph.hpp"
+#include "isotherm/slam/graph/pose_graph.hpp"
 
 namespace isotherm::slam {
 

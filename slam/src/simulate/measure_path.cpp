@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "isotherm/base/require.hpp"
-#include "isotherm/slam/odometry.hpp"
+#include "isotherm/slam/graph/odometry.hpp"
 #include "simulate/loop_pairs.hpp"
 
 namespace isotherm::slam {

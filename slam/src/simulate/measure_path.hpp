@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "isotherm/base/random.hpp"
-#include "isotherm/slam/simulate.hpp"
+#include "isotherm/slam/simulate/simulate.hpp"
 
 namespace isotherm::slam {
 

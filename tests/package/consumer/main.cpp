@@ -1,9 +1,9 @@
 // An outside program: uses every layer, so that all private dependencies of the
 // static libraries must be found and linked.
-#include <isotherm/geometry/polyline.hpp>
-#include <isotherm/slam/prune.hpp>
-#include <isotherm/slam/simulate.hpp>
-#include <isotherm/spectral/weighted_graph.hpp>
+#include <isotherm/geometry/curves/polyline.hpp>
+#include <isotherm/slam/prune/prune.hpp>
+#include <isotherm/slam/simulate/simulate.hpp>
+#include <isotherm/spectral/graph/weighted_graph.hpp>
 
 int main() {
   using namespace isotherm;

@@ -24,8 +24,8 @@ inline std::filesystem::path real_data_root() {
 
 /// Defines `variable` as the path of a real data file, or skips the test with a message that says
 /// what is missing and how to provide it.
-#define ISOTHERM_REAL_DATA_OR_SKIP(variable, name)                                      \
-  const std::filesystem::path variable = isotherm_test::real_data_root() / (name);      \
-  if (!std::filesystem::exists(variable)) {                                             \
-    GTEST_SKIP() << "no " << variable << "; set ISOTHERM_DATA to the data folder";      \
+#define ISOTHERM_REAL_DATA_OR_SKIP(variable, name)                                 \
+  const std::filesystem::path variable = isotherm_test::real_data_root() / (name); \
+  if (!std::filesystem::exists(variable)) {                                        \
+    GTEST_SKIP() << "no " << variable << "; set ISOTHERM_DATA to the data folder"; \
   }

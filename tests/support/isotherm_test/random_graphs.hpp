@@ -1,7 +1,7 @@
 #pragma once
 
 #include "isotherm/base/random.hpp"
-#include "isotherm/slam/pose_graph.hpp"
+#include "isotherm/slam/graph/pose_graph.hpp"
 
 namespace isotherm_test {
 

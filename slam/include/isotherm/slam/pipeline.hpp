@@ -1,8 +1,8 @@
 #pragma once
 
-#include "isotherm/slam/optimize.hpp"
-#include "isotherm/slam/pose_graph.hpp"
-#include "isotherm/slam/prune.hpp"
+#include "isotherm/slam/graph/pose_graph.hpp"
+#include "isotherm/slam/optimize/optimize.hpp"
+#include "isotherm/slam/prune/prune.hpp"
 
 namespace isotherm::slam {
 

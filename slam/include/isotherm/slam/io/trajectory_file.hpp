@@ -4,8 +4,8 @@
 
 #include "isotherm/base/read_report.hpp"
 #include "isotherm/base/text_reader.hpp"
+#include "isotherm/slam/graph/trajectory.hpp"
 #include "isotherm/slam/io/file_format.hpp"
-#include "isotherm/slam/trajectory.hpp"
 
 namespace isotherm::slam {
 

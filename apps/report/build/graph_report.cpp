@@ -1,0 +1,104 @@
+#include "report/build/graph_report.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "isotherm/spectral/eigen/embedding.hpp"
+#include "report/build/candidate_columns.hpp"
+#include "report/build/report_layout.hpp"
+#include "report/build/spectral_report.hpp"
+
+namespace isotherm::apps {
+namespace {
+
+using namespace spectral;
+
+constexpr Index kMostParts = 200;  // whose null vectors are worth carrying along
+
+// Two coordinates a vertex; those that a graph in too many parts does not have are 0.
+Eigen::MatrixXd coordinates(const WeightedGraph& graph, const ProgressCallback& progress) {
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(graph.vertex_count(), 2);
+  const Laplacian laplacian(graph);
+  const Index parts = laplacian.components().count;
+  if (graph.vertex_count() == 0 || parts > kMostParts) return rows;
+  const auto eigen =
+      smallest_eigenpairs(laplacian, {.count = std::min<Index>(parts + 2, graph.vertex_count()),
+                                      .tolerance = 1e-8,
+                                      .check_inertia = false,
+                                      .progress = progress});
+  const Eigen::MatrixXd found = commute_time_embedding(eigen);
+  const Eigen::Index columns = std::min<Eigen::Index>(2, found.cols());
+  rows.leftCols(columns) = found.leftCols(columns);
+  return rows;
+}
+
+void add_layouts(Report& report, const WeightedGraph& graph, const WeightedGraph& left,
+                 const EdgesRun& run) {
+  const auto dimension = run.points.rows();
+  if (dimension == 2 || dimension == 3) {
+    report.dimension = static_cast<int>(dimension);
+    report.layouts.push_back(
+        report_layout("points", "The points, where they are", run.points.transpose()));
+    return;
+  }
+  const auto& progress = run.options.progress;
+  report.layouts.push_back(report_layout("before", "Before: commute-time coordinates, all edges",
+                                         coordinates(graph, progress)));
+  report.layouts.push_back(report_layout("after", "After: commute-time coordinates, kept edges",
+                                         coordinates(left, progress)));
+}
+
+void add_candidates(Report& report, const WeightedGraph& graph, const EdgeVerdicts& verdicts) {
+  report.candidates = report_candidates(verdicts, [&graph](const EdgeVerdict& verdict) {
+    const auto& edge = graph.edge(static_cast<Index>(verdict.edge));
+    return CandidateSource{static_cast<std::int32_t>(edge.from), static_cast<std::int32_t>(edge.to),
+                           0};
+  });
+  ReportColumn weight{"weight", "weight", "", "Affinity of the edge, as the input has it.",
+                      {},       true};
+  for (const auto& edge : graph.edges()) weight.values.push_back(static_cast<float>(edge.weight));
+  report.candidates.columns.push_back(std::move(weight));
+}
+
+std::string words_of_threshold(const JudgeEdgesResult& result) {
+  return fmt::format(
+      "{} of {} scores are within a factor of two of their threshold. The threshold {:.4g} was "
+      "found from the scores; they split with a separation of {:.2f}, where 1 is perfect.",
+      close_calls(result.verdicts), result.verdicts.size(), result.threshold.value,
+      result.threshold.separation);
+}
+
+}  // namespace
+
+Report graph_report(const WeightedGraph& graph, const WeightedGraph& left,
+                    const JudgeEdgesResult& result, const EdgesRun& run) {
+  Report report;
+  report.kind = ReportKind::graph;
+  report.title = run.title;
+  report.nouns = {"vertex", "vertices", "edge", "edges", ""};
+  report.options = options_to_json(run.options);
+  report.node_ids = run.ids;
+  add_layouts(report, graph, left, run);
+  add_candidates(report, graph, result.verdicts);
+  const SpectralReportOptions options{.scales = scales_around(run.options.scale),
+                                      .threads = run.options.threads,
+                                      .progress = run.options.progress};
+  report.spectrum = report_spectrum(graph, options);
+  report.heat = report_heat(graph, edge_pairs(graph), report.candidates.verdict, options);
+  report.truth_note = "A plain graph has no true positions to compare with.";
+  const auto parts = [](const WeightedGraph& part) { return connected_components(part).count; };
+  report.summary = {
+      {"What came in", fmt::format("{}: {} vertices and {} edges in {} connected parts.", run.title,
+                                   graph.vertex_count(), graph.edge_count(), parts(graph))},
+      {"What was decided",
+       fmt::format("Method {} {}, in {:.2f} s.", enum_name(run.options.method),
+                   counts_in_words(result.verdicts, report.nouns), result.seconds)},
+      {"The result", fmt::format("The graph that is left has {} edges in {} connected parts.",
+                                 left.edge_count(), parts(left))},
+      {"How sure", words_of_threshold(result)},
+      {"Options", options_in_words(report.options, options_to_json(JudgeEdgesOptions{}))}};
+  return report;
+}
+
+}  // namespace isotherm::apps

@@ -1,0 +1,232 @@
+#include "report/build/pose_graph_report.hpp"
+
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "isotherm/slam/graph/trajectory.hpp"
+#include "isotherm/slam/optimize/optimize.hpp"
+#include "isotherm/slam/prune/induce.hpp"
+#include "isotherm/slam/prune/odometry_chi2.hpp"
+#include "report/build/candidate_columns.hpp"
+#include "report/build/prune_words.hpp"
+#include "report/build/report_layout.hpp"
+#include "report/build/spectral_report.hpp"
+#include "report/build/truth_alignment.hpp"
+
+namespace isotherm::apps {
+namespace {
+
+using namespace slam;
+
+template <class Pose>
+class Explainer {
+ public:
+  Explainer(const PoseGraph<Pose>& graph, const EdgeRoles& roles, const PruneResult& decisions,
+            const PruneRun<Pose>& run)
+      : graph_(graph), roles_(roles), decisions_(decisions), run_(run) {}
+
+  Report explain() && {
+    OptimizeOptions options;
+    options.progress = run_.options.progress;
+    const auto map =
+        optimize(apply_verdicts(graph_, decisions_.verdicts, run_.keep_ambiguous), options);
+    start();
+    add_candidates(map.poses);
+    add_layout("before",
+               graph_.poses.empty() ? "Before: the chain of odometry, with all loops"
+                                    : "Before: poses as in the file, with all loops",
+               trajectory_of(graph_).poses);
+    add_layout("after", "After: optimised without the pruned loops", map.poses);
+    add_path(map.poses);
+    add_spectral();
+    add_words(map);
+    return std::move(report_);
+  }
+
+ private:
+  void start() {
+    report_.kind = ReportKind::pose_graph;
+    report_.title = run_.title;
+    report_.dimension = Pose::kDim;
+    report_.unit = "m";
+    report_.nouns = {"pose", "poses", "loop", "loops", "odometry"};
+    report_.options = options_to_json(run_.options);
+    report_.warnings = decisions_.warnings;
+    report_.node_ids = graph_.ids;
+    for (const Index k : roles_.odometry) {
+      report_.trusted.push_back(static_cast<std::int32_t>(graph_.constraints[k].from));
+      report_.trusted.push_back(static_cast<std::int32_t>(graph_.constraints[k].to));
+    }
+    report_.rounds = report_rounds(decisions_);
+  }
+
+  void add_candidates(const std::vector<Pose>& map) {
+    auto& all = report_.candidates;
+    all = report_candidates(decisions_.verdicts, [this](const spectral::EdgeVerdict& verdict) {
+      const auto& constraint = graph_.constraints[verdict.edge];
+      return CandidateSource{static_cast<std::int32_t>(constraint.from),
+                             static_cast<std::int32_t>(constraint.to), constraint.line};
+    });
+    add_chi2(map);
+    if (!decisions_.consensus.details.empty()) add_consensus();
+  }
+
+  void add_chi2(const std::vector<Pose>& map) {
+    ReportColumn alone{"chi2_odometry",
+                       "χ² odometry",
+                       "",
+                       "Chi-squared of the loop against odometry alone.",
+                       {},
+                       true};
+    for (const auto& check : odometry_chi2(graph_, roles_)) {
+      alone.values.push_back(static_cast<float>(check.chi2));
+    }
+    ReportColumn after{"chi2_map",
+                       "χ² map",
+                       "",
+                       "Chi-squared of the loop in the optimised map, whether it is part of it "
+                       "or not.",
+                       {},
+                       true};
+    for (const Index k : roles_.candidates) {
+      const auto& constraint = graph_.constraints[k];
+      const auto r = residual(constraint, map[constraint.from], map[constraint.to]);
+      after.values.push_back(static_cast<float>(r.dot(constraint.information * r)));
+    }
+    report_.candidates.columns.push_back(std::move(alone));
+    report_.candidates.columns.push_back(std::move(after));
+  }
+
+  void add_consensus() {
+    auto& all = report_.candidates;
+    ReportColumn evidence{"evidence", "evidence",
+                          "",         "Log odds of a correct loop against a loop to anywhere.",
+                          {},         false};
+    std::unordered_map<Index, std::uint32_t> position;
+    for (std::uint32_t c = 0; c < roles_.candidates.size(); ++c) {
+      position.emplace(roles_.candidates[c], c);
+    }
+    all.conflict_offsets.push_back(0);
+    for (const auto& detail : decisions_.consensus.details) {
+      evidence.values.push_back(static_cast<float>(detail.evidence));
+      for (const Index loop : detail.conflicts) all.conflicts.push_back(position.at(loop));
+      all.conflict_offsets.push_back(static_cast<std::uint32_t>(all.conflicts.size()));
+    }
+    all.columns.push_back(std::move(evidence));
+  }
+
+  void add_layout(const std::string& key, const std::string& label,
+                  const std::vector<Pose>& poses) {
+    Eigen::MatrixXd rows(poses.size(), Eigen::Index{Pose::kDim});
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      rows.row(static_cast<Eigen::Index>(k)) = poses[k].translation().transpose();
+    }
+    auto layout = report_layout(key, label, rows);
+    if (!run_.truth.empty()) add_truth(layout, poses);
+    report_.layouts.push_back(std::move(layout));
+  }
+
+  void add_truth(ReportLayout& layout, const std::vector<Pose>& poses) {
+    auto comparison = compare_with_truth(poses, run_.truth, layout.origin);
+    if (!comparison) return;
+    layout.truth = std::move(comparison->truth);
+    layout.errors = std::move(comparison->errors);
+    errors_.push_back(comparison->statistics);
+  }
+
+  void add_path(const std::vector<Pose>& map) {
+    double travelled = 0.0;
+    for (std::size_t k = 0; k < map.size(); ++k) {
+      if (k > 0) travelled += (map[k].translation() - map[k - 1].translation()).norm();
+      report_.path.push_back(static_cast<float>(travelled));
+    }
+  }
+
+  void add_spectral() {
+    const auto& heat = run_.options.heat;
+    const auto induced =
+        induce(graph_, roles_, heat.induction, run_.options.threads, run_.options.progress);
+    const SpectralReportOptions options{
+        .scales = heat.scales, .threads = run_.options.threads, .progress = run_.options.progress};
+    std::vector<spectral::VertexPair> pairs;
+    for (const Index k : roles_.candidates) {
+      pairs.push_back({graph_.constraints[k].from, graph_.constraints[k].to});
+    }
+    report_.spectrum = report_spectrum(induced.graph, options);
+    report_.heat = report_heat(induced.graph, pairs, report_.candidates.verdict, options);
+    const std::string weights =
+        fmt::format(" Odometry weighs {}, loops by {}.", heat.induction.odometry_weight,
+                    enum_name(heat.induction.init));
+    report_.heat.note += weights;
+    report_.spectrum.note += weights;
+    for (const auto& round : decisions_.rounds) report_.heat.thresholds.push_back(round.threshold);
+  }
+
+  void add_words(const OptimizeResult<Pose>& map) {
+    report_.summary = {
+        {"What came in", words_of_input()},
+        {"What was decided", words_of_decisions(decisions_, report_.nouns, run_.keep_ambiguous)},
+        {"The result", words_of_map(map)},
+        {"How sure", words_of_certainty(decisions_, run_.options)},
+        {"Options", options_in_words(report_.options, options_to_json(PruneOptions{}))}};
+    report_.truth_note = words_of_truth();
+    if (map.status != OptimizeStatus::converged) {
+      report_.warnings.push_back(
+          fmt::format("the optimisation of the map ended with status {}", enum_name(map.status)));
+    }
+  }
+
+  std::string words_of_input() const {
+    return fmt::format("{}: {} poses in {}, {} odometry edges and {} loop closures.", run_.title,
+                       graph_.vertex_count(), Pose::kDim == 2 ? "the plane" : "space",
+                       roles_.odometry.size(), roles_.candidates.size());
+  }
+
+  std::string words_of_map(const OptimizeResult<Pose>& map) const {
+    std::string text = fmt::format(
+        "The map was optimised in {} iteration{}; its {} constraints have a chi-squared of "
+        "{:.4g} in all.",
+        map.iterations, map.iterations == 1 ? "" : "s", map.chi2.size(), map.chi2.sum());
+    if (errors_.size() == 2) {
+      text += fmt::format(
+          " Its trajectory is {:.3g} m RMSE from the truth ({:.3g} m on average, "
+          "{:.3g} m at most); before, it was {:.3g} m RMSE.",
+          errors_[1].rmse, errors_[1].mean, errors_[1].max, errors_[0].rmse);
+    }
+    return text;
+  }
+
+  std::string words_of_truth() const {
+    if (run_.truth.empty()) return "No ground truth was given (--ground-truth FILE).";
+    if (errors_.empty()) return "The ground truth has no pose for any vertex.";
+    return fmt::format(
+        "Distance of {} poses from their true positions, after the rigid motion "
+        "that makes it least (ATE).",
+        errors_.back().pairs);
+  }
+
+  const PoseGraph<Pose>& graph_;
+  const EdgeRoles& roles_;
+  const PruneResult& decisions_;
+  const PruneRun<Pose>& run_;
+  std::vector<ErrorStatistics> errors_;  // before and after, if there is truth
+  Report report_;
+};
+
+}  // namespace
+
+template <class Pose>
+Report pose_graph_report(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                         const PruneResult& decisions, const PruneRun<Pose>& run) {
+  return Explainer<Pose>(graph, roles, decisions, run).explain();
+}
+
+template Report pose_graph_report(const PoseGraph<Pose2>&, const EdgeRoles&, const PruneResult&,
+                                  const PruneRun<Pose2>&);
+template Report pose_graph_report(const PoseGraph<Pose3>&, const EdgeRoles&, const PruneResult&,
+                                  const PruneRun<Pose3>&);
+
+}  // namespace isotherm::apps

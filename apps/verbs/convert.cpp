@@ -1,0 +1,173 @@
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "console.hpp"
+#include "isotherm/network/io/range_file.hpp"
+#include "isotherm/slam/io/file_format.hpp"
+#include "isotherm/slam/io/pose_graph_file.hpp"
+#include "isotherm/slam/io/trajectory_file.hpp"
+#include "isotherm/spectral/graph/graph_file.hpp"
+#include "verbs/verbs.hpp"
+
+namespace isotherm::apps {
+namespace {
+
+using slam::FileContent;
+using slam::FileFormat;
+
+// The format that goes with the end of a name; ".gz" plays no part.
+std::optional<FileFormat> format_of_name(const std::string& path) {
+  std::filesystem::path name(path);
+  if (name.extension() == ".gz") name.replace_extension();
+  const auto suffix = name.extension();
+  if (suffix == ".g2o") return FileFormat::g2o;
+  if (suffix == ".graph") return FileFormat::toro;
+  if (suffix == ".pyfg") return FileFormat::pyfg;
+  if (suffix == ".tum") return FileFormat::tum;
+  if (suffix == ".kitti") return FileFormat::kitti;
+  if (suffix == ".euroc") return FileFormat::euroc;
+  if (suffix == ".mtx") return FileFormat::matrix_market;
+  return std::nullopt;
+}
+
+// The structure of a pose graph: one edge of weight 1 a constraint.
+template <class Pose>
+spectral::GraphFile structure_of(const slam::PoseGraph<Pose>& graph) {
+  std::vector<spectral::WeightedEdge> edges;
+  for (const auto& constraint : graph.constraints) {
+    edges.push_back({constraint.from, constraint.to, 1.0});
+  }
+  return {{graph.vertex_count(), std::move(edges)}, graph.ids, {}};
+}
+
+struct ConvertVerb {
+  CommonFlags flags;
+  std::string input;
+  std::string output;
+  std::string to;
+
+  int run() const {
+    const FileFormat target = target_format();
+    TextReader reader(input);
+    const auto source = slam::require_format(reader);
+    const ReadReport report = convert(reader, source, target);
+    for (const auto& diagnostic : report.diagnostics) warn(flags, to_string(diagnostic));
+    say(flags, fmt::format("{} ({}) -> {} ({})", input, report.format, output, enum_name(target)));
+    write_json(flags.json, {{"schema", "isotherm.convert/1"},
+                            {"from", report.format},
+                            {"to", enum_name(target)},
+                            {"records", report.records},
+                            {"skipped", report.skipped},
+                            {"repairs", report.repairs}});
+    return kOk;
+  }
+
+ private:
+  FileFormat target_format() const {
+    if (!to.empty()) return enum_value<FileFormat>("--to", to);
+    const auto named = format_of_name(output);
+    if (!named) {
+      throw InvalidArgument("--to", "is needed where the name of the output tells no format");
+    }
+    return *named;
+  }
+
+  ReadReport convert(TextReader& reader, FileFormat source, FileFormat target) const {
+    const ReadOptions options{.strict = flags.strict};
+    const bool to_ranges = target == FileFormat::ranges || target == FileFormat::pyfg;
+    switch (slam::content_of(source)) {
+      case FileContent::ranges:
+        if (source == FileFormat::pyfg && !to_ranges) break;  // its poses are wanted
+        return convert_ranges(network::read_ranges(reader, options), target);
+      case FileContent::trajectory:
+        return convert_trajectory(slam::read_trajectory(reader, options), target);
+      case FileContent::graph:
+        return convert_graph(spectral::read_graph(reader, options), target);
+      case FileContent::pose_graph:
+      case FileContent::unknown:
+        break;
+    }
+    return convert_pose_graph(slam::read_pose_graph(reader, options), target);
+  }
+
+  [[noreturn]] void refuse(const ReadReport& report, FileFormat target) const {
+    throw InvalidArgument("--to", fmt::format("a file in format {} cannot become {}", report.format,
+                                              enum_name(target)));
+  }
+
+  ReadReport convert_pose_graph(slam::PoseGraphFile file, FileFormat target) const {
+    if (target == FileFormat::g2o) {
+      slam::write_g2o(output, file);
+    } else if (target == FileFormat::toro) {
+      slam::write_toro(output, file.graph);
+    } else if (slam::content_of(target) == FileContent::trajectory) {
+      slam::TrajectoryFile trajectory;
+      trajectory.report = std::move(file.report);
+      std::visit([&](const auto& g) { trajectory.trajectory = trajectory_of(g); }, file.graph);
+      return convert_trajectory(trajectory, target);
+    } else if (slam::content_of(target) == FileContent::graph) {
+      auto graph = std::visit([](const auto& g) { return structure_of(g); }, file.graph);
+      graph.report = std::move(file.report);
+      return convert_graph(graph, target);
+    } else {
+      refuse(file.report, target);
+    }
+    return file.report;
+  }
+
+  ReadReport convert_trajectory(const slam::TrajectoryFile& file, FileFormat target) const {
+    if (slam::content_of(target) != FileContent::trajectory || target == FileFormat::points) {
+      refuse(file.report, target);
+    }
+    slam::write_trajectory(output, file.trajectory, target);
+    return file.report;
+  }
+
+  ReadReport convert_ranges(const network::RangeFile& file, FileFormat target) const {
+    if (target == FileFormat::pyfg) {
+      network::write_pyfg(output, file.network);
+    } else if (target == FileFormat::ranges) {
+      network::write_range_csv(output, file.network);
+    } else {
+      refuse(file.report, target);
+    }
+    return file.report;
+  }
+
+  ReadReport convert_graph(const spectral::GraphFile& file, FileFormat target) const {
+    if (target == FileFormat::edges) {
+      spectral::write_edge_csv(output, file.graph, file.ids);
+    } else if (target == FileFormat::matrix_market) {
+      spectral::write_matrix_market(output, file.graph);
+    } else {
+      refuse(file.report, target);
+    }
+    return file.report;
+  }
+};
+
+}  // namespace
+
+Verb add_convert(CLI::App& root) {
+  auto convert = std::make_shared<ConvertVerb>();
+  CLI::App* verb = root.add_subcommand("convert", "write a file in another format");
+  verb->add_option("input", convert->input,
+                   "pose graph, trajectory, ranges or plain graph (- for stdin)")
+      ->required();
+  verb->add_option("-o,--output", convert->output, "file to write (- for stdout)")
+      ->required()
+      ->type_name("FILE");
+  verb->add_option("--to", convert->to,
+                   "g2o, toro, tum, kitti, euroc, planar, pyfg, ranges, edges or matrix-market; "
+                   "by default what the output's suffix says (.g2o .graph .tum .kitti .euroc "
+                   ".pyfg .mtx)")
+      ->type_name("FORMAT");
+  add_common_flags(*verb, convert->flags);
+  return {verb, [convert] { return convert->run(); }};
+}
+
+}  // namespace isotherm::apps

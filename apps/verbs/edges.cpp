@@ -1,0 +1,170 @@
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "console.hpp"
+#include "isotherm/base/error.hpp"
+#include "isotherm/geometry/points/neighbour_graph.hpp"
+#include "isotherm/geometry/points/point_cloud.hpp"
+#include "isotherm/network/io/position_file.hpp"
+#include "isotherm/spectral/edges/judge_edges.hpp"
+#include "isotherm/spectral/edges/verdict_file.hpp"
+#include "isotherm/spectral/graph/graph_file.hpp"
+#include "option_verb.hpp"
+#include "report/build/graph_report.hpp"
+#include "report/report_flags.hpp"
+#include "verbs/verbs.hpp"
+
+namespace isotherm::apps {
+namespace {
+
+using namespace spectral;
+
+struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
+  std::string input;
+  std::string output;
+  std::string verdicts;
+  bool keep_ambiguous = false;
+  std::string positions;          // of the vertices, a file
+  std::optional<int> neighbours;  // of a point, where the input is a cloud
+  std::optional<double> radius;   // in the unit of the cloud
+  ReportFlags explain;
+
+  struct Input : GraphFile {
+    Eigen::MatrixXd points;  // dimension x vertices; empty if not known
+  };
+
+  int run() {
+    if (resolve_or_dump()) return kOk;
+    options.threads = flags.threads;
+    options.seed = flags.seed;
+    options.progress = progress_line(flags);
+    const auto file = read_input();
+    for (const auto& diagnostic : file.report.diagnostics) warn(flags, to_string(diagnostic));
+    auto result = judge_edges(file.graph, options, file.points);
+    const auto left = kept(file.graph, result.verdicts);
+    if (explain.wanted()) {
+      const EdgesRun run{file_title(input), options, file.ids, file.points};
+      write_report(explain, graph_report(file.graph, left, result, run));
+    }
+    name_vertices(result.verdicts, file.ids);
+    report(result);
+    if (!output.empty()) write_edge_csv(output, left, file.ids);
+    if (!verdicts.empty()) write_verdicts(verdicts, result.verdicts);
+    write_json(flags.json, to_json(result));
+    return kOk;
+  }
+
+  // The graph of the file, or of the points in it.
+  Input read_input() const {
+    if (!neighbours && !radius) {
+      auto file = read_graph(input, {.strict = flags.strict});
+      auto points = positions.empty() ? Eigen::MatrixXd() : positions_of(file.ids);
+      return {std::move(file), std::move(points)};
+    }
+    auto cloud = geometry::read_points(input);
+    const geometry::NeighbourGraphOptions how = {.threads = flags.threads,
+                                                 .progress = progress_line(flags)};
+    Input file;
+    file.graph = neighbours ? geometry::nearest_neighbour_graph(cloud.points, *neighbours, how)
+                            : geometry::radius_graph(cloud.points, *radius, how);
+    file.ids.resize(file.graph.vertex_count());
+    std::iota(file.ids.begin(), file.ids.end(), 0);
+    file.report = std::move(cloud.report);
+    file.points = std::move(cloud.points);
+    return file;
+  }
+
+  // Those of the vertices, from their file, which may have more.
+  Eigen::MatrixXd positions_of(const std::vector<std::uint64_t>& ids) const {
+    const auto file = network::read_positions(positions);
+    const auto column_of = file.column_of();
+    std::vector<Eigen::Index> columns;
+    for (const auto id : ids) {
+      const auto found = column_of.find(std::to_string(id));
+      if (found == column_of.end()) {
+        throw ParseError({positions, 0, 0}, std::to_string(id), "no position of this vertex");
+      }
+      columns.push_back(found->second);
+    }
+    return file.positions(Eigen::all, columns);
+  }
+
+  // Verdict files carry the input's own vertex numbers.
+  static void name_vertices(EdgeVerdicts& all, const std::vector<std::uint64_t>& ids) {
+    for (auto& verdict : all) {
+      verdict.from = ids[verdict.from];
+      verdict.to = ids[verdict.to];
+    }
+  }
+
+  WeightedGraph kept(const WeightedGraph& graph, const EdgeVerdicts& all) const {
+    std::vector<bool> keep;
+    for (const auto& verdict : all) {
+      keep.push_back(verdict.verdict == Verdict::keep ||
+                     (keep_ambiguous && verdict.verdict == Verdict::ambiguous));
+    }
+    return filter_edges(graph, keep);
+  }
+
+  Json to_json(const JudgeEdgesResult& result) const {
+    const double threshold = result.threshold.value;
+    return {{"schema", "isotherm.edges/1"},
+            {"method", enum_name(options.method)},
+            {"candidates", result.verdicts.size()},
+            {"kept", count(result.verdicts, Verdict::keep)},
+            {"pruned", count(result.verdicts, Verdict::prune)},
+            {"ambiguous", count(result.verdicts, Verdict::ambiguous)},
+            // JSON has no infinity; null stands for "nothing to split".
+            {"threshold", std::isfinite(threshold) ? Json(threshold) : Json()},
+            {"separation", result.threshold.separation},
+            {"seconds", result.seconds},
+            {"options", options_to_json(options)}};
+  }
+
+  void report(const JudgeEdgesResult& result) const {
+    say(flags,
+        fmt::format("{}: {} edges, {} kept, {} pruned, {} ambiguous, {:.2f} s",
+                    enum_name(options.method), result.verdicts.size(),
+                    count(result.verdicts, Verdict::keep), count(result.verdicts, Verdict::prune),
+                    count(result.verdicts, Verdict::ambiguous), result.seconds));
+  }
+};
+
+}  // namespace
+
+Verb add_edges(CLI::App& root) {
+  auto edges = std::make_shared<EdgesVerb>();
+  CLI::App* verb = root.add_subcommand("edges", "remove false edges from a weighted graph");
+  verb->add_option("input", edges->input, "edge list, MatrixMarket or point file (- for stdin)")
+      ->required();
+  auto* neighbours = verb->add_option("--neighbours", edges->neighbours,
+                                      "the input is points: join each to so many nearest ones")
+                         ->type_name("COUNT");
+  auto* radius = verb->add_option("--radius", edges->radius,
+                                  "the input is points: join those at most so far from each other")
+                     ->type_name("DISTANCE")
+                     ->excludes(neighbours);
+  verb->add_option("--positions", edges->positions,
+                   "node,x,y[,z] of the vertices: for --method rank, and to draw them")
+      ->type_name("FILE")
+      ->excludes(neighbours)
+      ->excludes(radius);
+  verb->add_option("-o,--output", edges->output, "kept edges to write, as CSV (- for stdout)")
+      ->type_name("FILE");
+  verb->add_option("--verdicts", edges->verdicts, "decision and reason an edge, as CSV")
+      ->type_name("FILE");
+  verb->add_flag("--keep-ambiguous", edges->keep_ambiguous,
+                 "keep edges that are not proven either way, such as bridges");
+  edges->explain.add_to(*verb);
+  edges->add_flags(*verb);
+  return {verb, [edges] { return edges->run(); }};
+}
+
+}  // namespace isotherm::apps

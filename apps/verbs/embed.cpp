@@ -1,0 +1,164 @@
+#include <array>
+#include <bit>
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "console.hpp"
+#include "isotherm/base/error.hpp"
+#include "isotherm/base/text_writer.hpp"
+#include "isotherm/spectral/eigen/embedding.hpp"
+#include "isotherm/spectral/graph/graph_file.hpp"
+#include "option_verb.hpp"
+#include "verbs/verbs.hpp"
+
+namespace isotherm::apps {
+namespace {
+
+using namespace spectral;
+
+enum class Embedding { commute_time, heat, eigenmaps };
+
+constexpr std::array<EnumName<Embedding>, 3> enum_names(Embedding) {
+  return {{{Embedding::commute_time, "commute-time"},
+           {Embedding::heat, "heat"},
+           {Embedding::eigenmaps, "eigenmaps"}}};
+}
+
+struct EmbedOptions {
+  Embedding method = Embedding::commute_time;
+  std::int64_t dimensions = 2;  // columns, >= 1; null eigenvectors have none
+  double scale = 1.0;           // diffusion time, for heat; finite, >= 0
+  LaplacianKind laplacian = LaplacianKind::combinatorial;
+
+  void validate() const {
+    if (dimensions < 1) throw InvalidArgument("dimensions", "must be at least 1");
+    if (!std::isfinite(scale) || scale < 0.0) {
+      throw InvalidArgument("scale", "must be finite and not negative");
+    }
+  }
+};
+
+template <class Options, class Visitor>
+requires std::same_as<std::remove_const_t<Options>, EmbedOptions>
+void visit_fields(Options& options, Visitor&& visit) {
+  visit("method", options.method, "coordinates to compute");
+  visit("dimensions", options.dimensions, "number of coordinates");
+  visit("scale", options.scale, "heat: diffusion time");
+  visit("laplacian", options.laplacian, "matrix whose eigenvectors are used");
+}
+
+Eigen::MatrixXd coordinates(const EigenDecomposition& eigen, const EmbedOptions& options) {
+  const Eigen::Index columns = eigen.count() - eigen.null_count;
+  switch (options.method) {
+    case Embedding::commute_time:
+      return commute_time_embedding(eigen);
+    case Embedding::heat:
+      return heat_embedding(eigen, options.scale).rightCols(columns);
+    case Embedding::eigenmaps:
+      return laplacian_eigenmap(eigen);
+  }
+  throw InvalidArgument("method", "is not an embedding");
+}
+
+std::string csv_text(const Eigen::MatrixXd& rows, const std::vector<std::uint64_t>& ids) {
+  std::string text = "vertex";
+  for (Eigen::Index c = 0; c < rows.cols(); ++c) text += fmt::format(",x{}", c);
+  text += '\n';
+  for (Eigen::Index r = 0; r < rows.rows(); ++r) {
+    append_number(text, ids[static_cast<std::size_t>(r)]);
+    for (Eigen::Index c = 0; c < rows.cols(); ++c) {
+      text += ',';
+      append_number(text, rows(r, c));
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+// NumPy's format, version 1.0: rows in ascending order of vertex number, column-major.
+std::string npy_text(const Eigen::MatrixXd& rows) {
+  constexpr std::size_t kAlignment = 64;
+  constexpr std::size_t kPreamble = 10;
+  static_assert(std::endian::native == std::endian::little);
+  std::string header = fmt::format("{{'descr': '<f8', 'fortran_order': True, 'shape': ({}, {}), }}",
+                                   rows.rows(), rows.cols());
+  const std::size_t length = kPreamble + header.size() + 1;
+  header.append((kAlignment - length % kAlignment) % kAlignment, ' ');
+  header += '\n';
+  std::string text("\x93NUMPY\x01\x00", 8);
+  text += static_cast<char>(header.size() & 0xff);
+  text += static_cast<char>(header.size() >> 8);
+  text += header;
+  text.append(reinterpret_cast<const char*>(rows.data()),
+              static_cast<std::size_t>(rows.size()) * sizeof(double));
+  return text;
+}
+
+struct EmbedVerb : OptionVerb<EmbedOptions> {
+  std::string input;
+  std::string output;
+
+  int run() {
+    if (resolve_or_dump()) return kOk;
+    options.validate();
+    const auto file = read_graph(input, {.strict = flags.strict});
+    for (const auto& diagnostic : file.report.diagnostics) warn(flags, to_string(diagnostic));
+    const Laplacian laplacian(file.graph, options.laplacian);
+    EigenOptions eigen_options;
+    const auto wanted = options.dimensions + laplacian.components().count;
+    eigen_options.count = static_cast<Index>(std::min<std::int64_t>(wanted, laplacian.size()));
+    eigen_options.progress = progress_line(flags);
+    const auto eigen = smallest_eigenpairs(laplacian, eigen_options);
+    const auto rows = coordinates(eigen, options);
+    if (rows.cols() < options.dimensions) {
+      warn(flags, fmt::format("the graph has only {} coordinates", rows.cols()));
+    }
+    report(eigen);
+    OutputFile out(output);
+    out.write(output.ends_with(".npy") ? npy_text(rows) : csv_text(rows, file.ids));
+    out.commit();
+    write_json(flags.json, to_json(eigen));
+    return eigen.status == EigenStatus::converged ? kOk : kNotConverged;
+  }
+
+  Json to_json(const EigenDecomposition& eigen) const {
+    const std::vector<double> values(eigen.values.data(), eigen.values.data() + eigen.count());
+    return {{"schema", "isotherm.embed/1"},
+            {"method", enum_name(options.method)},
+            {"vertices", eigen.size()},
+            {"components", eigen.null_count},
+            {"solver", enum_name(eigen.method)},
+            {"converged", eigen.status == EigenStatus::converged},
+            {"eigenvalues", values},
+            {"largest_residual", eigen.count() > 0 ? eigen.residuals.maxCoeff() : 0.0},
+            {"orthogonality", eigen.orthogonality},
+            {"seconds", eigen.seconds},
+            {"options", options_to_json(options)}};
+  }
+
+  void report(const EigenDecomposition& eigen) const {
+    say(flags, fmt::format("{}: {} vertices, {} components, {} eigenpairs by {}, {:.2f} s{}",
+                           enum_name(options.method), eigen.size(), eigen.null_count, eigen.count(),
+                           enum_name(eigen.method), eigen.seconds,
+                           eigen.status == EigenStatus::converged ? "" : "; not converged"));
+  }
+};
+
+}  // namespace
+
+Verb add_embed(CLI::App& root) {
+  auto embed = std::make_shared<EmbedVerb>();
+  CLI::App* verb = root.add_subcommand("embed", "give the vertices of a graph coordinates");
+  verb->add_option("input", embed->input, "edge list or MatrixMarket file (- for stdin)")
+      ->required();
+  verb->add_option("-o,--output", embed->output,
+                   "coordinates to write: CSV, or NumPy if named .npy (- for stdout)")
+      ->required()
+      ->type_name("FILE");
+  embed->add_flags(*verb);
+  return {verb, [embed] { return embed->run(); }};
+}
+
+}  // namespace isotherm::apps

@@ -1,0 +1,73 @@
+#include <memory>
+
+#include "isotherm/base/text_writer.hpp"
+#include "isotherm/slam/io/file_format.hpp"
+#include "verbs/describe.hpp"
+#include "verbs/verbs.hpp"
+
+namespace isotherm::apps {
+namespace {
+
+using slam::FileContent;
+
+struct InfoVerb {
+  CommonFlags flags;
+  std::string input;
+
+  int run() const {
+    const Json description = read_and_describe();
+    if (flags.json != "-") {
+      OutputFile text("-");
+      text.write(to_text(description));
+      text.commit();
+    }
+    write_json(flags.json, description);
+    return kOk;
+  }
+
+ private:
+  Json read_and_describe() const {
+    TextReader reader(input);
+    const auto format = slam::require_format(reader);
+    const ReadOptions options{.strict = flags.strict};
+    switch (slam::content_of(format)) {
+      case FileContent::trajectory:
+        return describe(slam::read_trajectory(reader, options));
+      case FileContent::graph:
+        return describe(spectral::read_graph(reader, options));
+      case FileContent::ranges:
+        return describe_ranges(reader, format, options);
+      case FileContent::pose_graph:
+      case FileContent::unknown:
+        break;
+    }
+    return describe(slam::read_pose_graph(reader, options));
+  }
+
+  // A PyFG file may hold a pose graph beside the ranges; it takes a second pass,
+  // which standard input does not allow.
+  Json describe_ranges(TextReader& reader, slam::FileFormat format,
+                       const ReadOptions& options) const {
+    Json json = describe(network::read_ranges(reader, options));
+    if (format == slam::FileFormat::pyfg && input != "-") {
+      Json graph = describe(slam::read_pose_graph(input, options));
+      graph.erase("schema");
+      json["pose_graph"] = std::move(graph);
+    }
+    return json;
+  }
+};
+
+}  // namespace
+
+Verb add_info(CLI::App& root) {
+  auto info = std::make_shared<InfoVerb>();
+  CLI::App* verb = root.add_subcommand("info", "say what is in a file");
+  verb->add_option("input", info->input,
+                   "pose graph, trajectory, ranges or plain graph (- for stdin)")
+      ->required();
+  add_common_flags(*verb, info->flags);
+  return {verb, [info] { return info->run(); }};
+}
+
+}  // namespace isotherm::apps

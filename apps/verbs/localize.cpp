@@ -1,0 +1,199 @@
+#include "isotherm/network/localize/localize.hpp"
+
+#include <charconv>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "console.hpp"
+#include "isotherm/network/io/position_file.hpp"
+#include "isotherm/network/io/range_file.hpp"
+#include "isotherm/spectral/edges/verdict_file.hpp"
+#include "option_verb.hpp"
+#include "report/build/network_report.hpp"
+#include "report/report_flags.hpp"
+#include "verbs/verbs.hpp"
+
+namespace isotherm::apps {
+namespace {
+
+using namespace network;
+using spectral::Verdict;
+
+// A name that is a number, in decimal digits only.
+std::optional<std::uint64_t> number_in(const std::string& name) {
+  std::uint64_t number = 0;
+  const auto end = name.data() + name.size();
+  const auto [stop, error] = std::from_chars(name.data(), end, number);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return number;
+}
+
+struct LocalizeVerb : OptionVerb<LocalizeOptions> {
+  std::string input;
+  std::string anchors;
+  std::string output;
+  std::string verdicts;
+  std::string truth;
+  bool file_anchors = false;
+  ReportFlags explain;
+  int dimension = 0;
+
+  int run() {
+    if (resolve_or_dump()) return kOk;
+    options.threads = flags.threads;
+    options.progress = progress_line(flags);
+    const auto network = read_network();
+    auto result = localize(network, options);
+    report(network, result);
+    if (!output.empty()) write_positions(output, network, result);
+    if (explain.wanted()) {
+      const LocalizeRun run{file_title(input), options, true_positions(network)};
+      write_report(explain, network_report(network, result, run));
+    }
+    if (!verdicts.empty()) {
+      name_ends(result.verdicts, network);
+      spectral::write_verdicts(verdicts, result.verdicts);
+    }
+    write_json(flags.json, to_json(network, result));
+    return result.status == LocalizeStatus::not_converged ? kNotConverged : kOk;
+  }
+
+  RangeNetwork read_network() const {
+    auto file = read_ranges(input, {.strict = flags.strict});
+    for (const auto& diagnostic : file.report.diagnostics) warn(flags, to_string(diagnostic));
+    auto& network = file.network;
+    if (!anchors.empty()) {
+      for (const auto& name : set_anchors(network, read_positions(anchors))) {
+        if (flags.strict) throw InvalidArgument("anchors", "no range leads to " + name);
+        warn(flags, "no range leads to the anchor " + name);
+      }
+    } else if (!file_anchors) {
+      network.landmarks.clear();
+    }
+    if (dimension != 0 && dimension != network.dimension) {
+      if (!network.landmarks.empty()) {
+        throw InvalidArgument("dimension", "is that of the anchors where there are any");
+      }
+      network.dimension = dimension;
+      network.positions.resize(0, 0);
+    }
+    return std::move(network);
+  }
+
+  // In the order of the network's nodes; NaN for those the file does not have.
+  Eigen::MatrixXd true_positions(const RangeNetwork& network) const {
+    if (truth.empty()) return {};
+    const auto known = read_positions(truth);
+    if (known.dimension() != network.dimension) {
+      throw InvalidArgument("ground-truth", "has another number of coordinates than the network");
+    }
+    const auto column_of = known.column_of();
+    Eigen::MatrixXd positions = Eigen::MatrixXd::Constant(network.dimension, network.node_count(),
+                                                          std::numeric_limits<double>::quiet_NaN());
+    for (Index v = 0; v < network.node_count(); ++v) {
+      const auto found = column_of.find(network.names[v]);
+      if (found != column_of.end()) positions.col(v) = known.positions.col(found->second);
+    }
+    return positions;
+  }
+
+  // Verdict files have numbers for vertices: the names, if all of them are numbers,
+  // else the places of the nodes in order of first appearance.
+  static void name_ends(spectral::EdgeVerdicts& all, const RangeNetwork& network) {
+    std::vector<std::uint64_t> ids;
+    for (const auto& name : network.names) {
+      const auto number = number_in(name);
+      if (!number) return;
+      ids.push_back(*number);
+    }
+    for (auto& verdict : all) {
+      verdict.from = ids[verdict.from];
+      verdict.to = ids[verdict.to];
+    }
+  }
+
+  void report(const RangeNetwork& network, const LocalizeResult& result) const {
+    const auto& all = result.verdicts;
+    say(flags,
+        fmt::format("{}: {} ranges, {} kept, {} pruned, {} ambiguous, {:.2f} s",
+                    enum_name(options.method), all.size(), count(all, Verdict::keep),
+                    count(all, Verdict::prune), count(all, Verdict::ambiguous), result.seconds));
+    std::string line = fmt::format("{} nodes", network.node_count());
+    for (const auto& [status, name] : enum_names(NodeStatus{})) {
+      const auto nodes = result.count(status);
+      if (nodes > 0) line += fmt::format(", {} {}", nodes, name);
+    }
+    say(flags, line);
+    if (!result.anchored) say(flags, "no anchors: positions are known up to an isometry");
+    for (Index v = 0; v < network.node_count(); ++v) {
+      const auto status = result.nodes[v];
+      if (status == NodeStatus::anchor || status == NodeStatus::localised) continue;
+      detail_line(flags, fmt::format("node {}: {}", network.names[v], enum_name(status)));
+    }
+    if (result.status == LocalizeStatus::no_start) warn(flags, "no node could be localised");
+    if (result.status == LocalizeStatus::not_converged) {
+      warn(flags, "the refinement did not converge; see --max-iterations");
+    }
+  }
+
+  Json to_json(const RangeNetwork& network, const LocalizeResult& result) const {
+    Json nodes = Json::object();
+    for (const auto& [status, name] : enum_names(NodeStatus{})) {
+      nodes[std::string(name)] = result.count(status);
+    }
+    return {{"schema", "isotherm.localize/1"},
+            {"method", enum_name(options.method)},
+            {"dimension", network.dimension},
+            {"anchored", result.anchored},
+            {"nodes", nodes},
+            {"candidates", result.verdicts.size()},
+            {"kept", count(result.verdicts, Verdict::keep)},
+            {"pruned", count(result.verdicts, Verdict::prune)},
+            {"ambiguous", count(result.verdicts, Verdict::ambiguous)},
+            {"status", enum_name(result.status)},
+            {"noise_factor", result.noise_factor},
+            {"sigma", result.sigma},
+            {"chi2", result.chi2},
+            {"dof", result.dof},
+            {"iterations", result.iterations},
+            {"rounds", result.rounds},
+            {"seconds", result.seconds},
+            {"options", options_to_json(options)}};
+  }
+};
+
+}  // namespace
+
+Verb add_localize(CLI::App& root) {
+  auto localize = std::make_shared<LocalizeVerb>();
+  CLI::App* verb = root.add_subcommand("localize", "find the nodes of a sensor network by ranges");
+  verb->add_option("input", localize->input, "ranges: CSV, PyFG, libRSF, intervals (- for stdin)")
+      ->required();
+  CLI::Option* file =
+      verb->add_option("--anchors", localize->anchors, "known positions, as CSV with node,x,y[,z]")
+          ->type_name("FILE");
+  verb->add_flag("--file-anchors", localize->file_anchors,
+                 "landmarks whose position the input has are anchors")
+      ->excludes(file);
+  verb->add_option("--dimension", localize->dimension,
+                   "2 or 3; 0: that of the anchors, or of the input's kind")
+      ->check(CLI::IsMember({0, 2, 3}))
+      ->capture_default_str();
+  verb->add_option("-o,--output", localize->output,
+                   "positions, status and covariance of all nodes to write, as CSV")
+      ->type_name("FILE");
+  verb->add_option("--verdicts", localize->verdicts, "decision and reason a range, as CSV")
+      ->type_name("FILE");
+  localize->explain.add_to(*verb);
+  verb->add_option("--ground-truth", localize->truth,
+                   "true positions, as CSV with node,x,y[,z], for the report")
+      ->type_name("FILE");
+  localize->add_flags(*verb);
+  return {verb, [localize] { return localize->run(); }};
+}
+
+}  // namespace isotherm::apps

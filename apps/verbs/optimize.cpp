@@ -1,0 +1,97 @@
+#include "isotherm/slam/optimize/optimize.hpp"
+
+#include <memory>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "console.hpp"
+#include "isotherm/slam/graph/trusted_edges.hpp"
+#include "isotherm/slam/io/pose_graph_file.hpp"
+#include "isotherm/slam/io/trajectory_file.hpp"
+#include "option_verb.hpp"
+#include "verbs/pose_graph_input.hpp"
+#include "verbs/verbs.hpp"
+
+namespace isotherm::apps {
+namespace {
+
+using namespace slam;
+
+struct OptimizeVerb : OptionVerb<OptimizeOptions> {
+  std::string input;
+  std::string output;
+  std::string trusted;
+
+  int run() {
+    if (resolve_or_dump()) return kOk;
+    options.progress = progress_line(flags);
+    auto file = read_input_graph(input, flags);
+    return std::visit([&](auto& graph) { return run_on(graph, file); }, file.graph);
+  }
+
+  template <class Pose>
+  int run_on(PoseGraph<Pose>& graph, const PoseGraphFile& file) {
+    const auto roles = trusted.empty() ? edge_roles(graph) : read_trusted_edges(trusted, graph);
+    const auto result = optimize(graph, roles, options);
+    report(result);
+    graph.poses = result.poses;
+    if (output.ends_with(".tum")) {
+      write_trajectory(output, Trajectory<Pose>{graph.poses, {}}, FileFormat::tum);
+    } else if (!output.empty()) {
+      write_g2o(output, file);
+    }
+    write_json(flags.json, to_json(result));
+    return result.status == OptimizeStatus::converged ? kOk : kNotConverged;
+  }
+
+  template <class Pose>
+  void report(const OptimizeResult<Pose>& result) const {
+    if (result.projected_information > 0) {
+      warn(flags, fmt::format("{} information matrices have a negative eigenvalue, taken as zero",
+                              result.projected_information));
+    }
+    if (result.components > 1) {
+      warn(flags, fmt::format("the graph has {} connected components, each held at one pose",
+                              result.components));
+    }
+    say(flags, fmt::format("{}: cost {:.6g} -> {:.9g} in {} iterations, {:.2f} s",
+                           enum_name(result.status), result.initial_cost, result.final_cost,
+                           result.iterations, result.seconds));
+  }
+
+  template <class Pose>
+  Json to_json(const OptimizeResult<Pose>& result) const {
+    return {{"schema", "isotherm.optimize/1"},
+            {"status", enum_name(result.status)},
+            {"iterations", result.iterations},
+            {"initial_cost", result.initial_cost},
+            {"final_cost", result.final_cost},
+            {"chi2", result.chi2.sum()},
+            {"poses", result.poses.size()},
+            {"constraints", result.chi2.size()},
+            {"components", result.components},
+            {"held", result.held},
+            {"projected_information", result.projected_information},
+            {"seconds", result.seconds},
+            {"options", options_to_json(options)}};
+  }
+};
+
+}  // namespace
+
+Verb add_optimize(CLI::App& root) {
+  auto optimize = std::make_shared<OptimizeVerb>();
+  CLI::App* verb = root.add_subcommand("optimize", "find the poses that fit a pose graph best");
+  verb->add_option("input", optimize->input, "pose graph (- for stdin)")->required();
+  verb->add_option("-o,--output", optimize->output,
+                   "optimised pose graph (g2o; - for stdout), or trajectory if it ends in .tum")
+      ->type_name("FILE");
+  verb->add_option("--trusted", optimize->trusted,
+                   "CSV of edges to trust in place of odometry (edge, or from,to)")
+      ->type_name("FILE");
+  optimize->add_flags(*verb);
+  return {verb, [optimize] { return optimize->run(); }};
+}
+
+}  // namespace isotherm::apps

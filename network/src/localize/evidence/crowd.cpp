@@ -1,0 +1,67 @@
+#include "localize/evidence/crowd.hpp"
+
+#include <vector>
+
+namespace isotherm::network::detail {
+
+Crowd::Crowd(const RangeProblem& problem, const Placement& placement, const Absence& absence)
+    : problem_(problem), absence_(absence), grid_(absence.reach()) {
+  rebuild(placement);
+}
+
+void Crowd::rebuild(const Placement& placement) {
+  grid_ = PointGrid(absence_.reach());
+  for (Index v = 0; v < problem_.nodes; ++v) {
+    if (placement.placed[v]) insert(v, placement.positions.col(v));
+  }
+}
+
+void Crowd::insert(Index node, const Point& position) {
+  if (absence_.reach() > 0.0) grid_.insert(node, position);
+}
+
+void Crowd::add_strangers(SmallNetwork& star, Index node, const std::vector<bool>& among) const {
+  constexpr double kAround = 2.5;  // reaches
+  if (!(absence_.reach() > 0.0) || star.fixed == 0) return;
+  // Where most neighbours are. Places far from there have too few strangers, which makes them
+  // look better than they are, not worse.
+  Point middle(problem_.dimension);
+  for (int i = 0; i < problem_.dimension; ++i) {
+    std::vector<double> values;
+    for (int k = 0; k < star.fixed; ++k) values.push_back(star.positions(i, k));
+    middle[i] = lower_median(std::move(values));
+  }
+  const double radius = kAround * absence_.reach();
+  std::vector<Point> found;
+  grid_.visit_near(middle, radius, [&](Index other, const Point& position) {
+    if (other == node || !among[other] || (position - middle).norm() > radius) return;
+    if (!has_range(problem_, node, other)) found.push_back(position);
+  });
+  star.strangers.resize(problem_.dimension, static_cast<Eigen::Index>(found.size()));
+  for (std::size_t k = 0; k < found.size(); ++k) star.strangers.col(k) = found[k];
+  star.absence = &absence_;
+}
+
+double Crowd::absence_cost(Index node, const Point& place, const std::vector<bool>& among) const {
+  double cost = 0.0;
+  if (!(absence_.reach() > 0.0)) return cost;
+  grid_.visit_near(place, absence_.reach(), [&](Index other, const Point& position) {
+    const double distance = (place - position).norm();
+    if (distance >= absence_.reach() || other == node || !among[other]) return;
+    if (!has_range(problem_, node, other)) cost += absence_.cost(distance);
+  });
+  return cost;
+}
+
+double absence_cost(const RangeProblem& problem, const Absence& absence,
+                    const Placement& placement) {
+  const Crowd crowd(problem, placement, absence);
+  double twice = 0.0;
+  for (Index v = 0; v < problem.nodes; ++v) {
+    if (!placement.placed[v]) continue;
+    twice += crowd.absence_cost(v, placement.positions.col(v), placement.placed);
+  }
+  return 0.5 * twice;
+}
+
+}  // namespace isotherm::network::detail

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "isotherm/network/localize/localize.hpp"
+#include "localize/problem/range_problem.hpp"
+#include "localize/problem/small_network.hpp"
+
+namespace isotherm::network::detail {
+
+/// A part of a map in the plane that may be its own mirror image.
+struct Fold {
+  std::vector<Index> part;  ///< ascending, without anchors
+  Point through;            ///< a point of the axis
+  Point normal;             ///< of the axis, of length 1
+  double cost = 0.0;        ///< by how much the mirrored part fits worse before anything gives way
+
+  Point mirrored(const Point& point) const;
+};
+
+/// The parts of at most 200 placed nodes that a line through two nodes with a range may be a hinge
+/// of: reflected in it, they break few of the trusted pairs that tie them to the others, or
+/// stretch them little. A part is grown from two of its nodes over pairs that the fold would break
+/// and takes in nodes that two such pairs lead to, so that no single range, which may be
+/// false, joins what is on both sides of a hinge. Each part once, and of parts that are nearly the
+/// same five; the cheapest fold first. Empty in space. Only lines that begin at a node in `among`
+/// count: those near what has changed since the last search. O(pairs * 200 * degree) at most, in
+/// parallel.
+std::vector<Fold> find_folds(const RangeProblem& problem, const std::vector<bool>& trusted,
+                             const Limits& limits, const LocalizeOptions& options,
+                             const Placement& placement, const std::vector<bool>& among);
+
+/// The nodes near these, where lines are to be searched again when these have moved.
+std::vector<bool> lines_near(const RangeProblem& problem, const std::vector<Index>& nodes);
+
+}  // namespace isotherm::network::detail

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "isotherm/network/localize/localize.hpp"
+#include "localize/problem/range_problem.hpp"
+
+namespace isotherm::network::detail {
+
+/// Mirrors the parts of a refined map whose mirror image fits better, those that gain most
+/// first, and refines it again, as long as there are any; how many. A map of springs does
+/// not do that by itself: on the way over a hinge everything fits worse.
+Index open_folds(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
+                 const LocalizeOptions& options, Placement& placement);
+
+}  // namespace isotherm::network::detail

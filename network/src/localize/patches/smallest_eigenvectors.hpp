@@ -1,0 +1,15 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "isotherm/spectral/types.hpp"
+
+namespace isotherm::network::detail {
+
+/// Orthonormal vectors, n x count, that span the eigenspace of the `count` smallest
+/// eigenvalues of a positive semi-definite matrix, by inverse iteration on a
+/// subspace with a few vectors to spare. One sparse factorisation.
+/// @throws NumericalError if it breaks down.
+Eigen::MatrixXd smallest_eigenvectors(const spectral::SparseMatrix& matrix, int count);
+
+}  // namespace isotherm::network::detail

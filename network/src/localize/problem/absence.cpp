@@ -1,0 +1,136 @@
+#include "localize/problem/absence.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "localize/problem/point_grid.hpp"
+
+namespace isotherm::network::detail {
+namespace {
+
+constexpr std::size_t kBins = 16;
+// The curve ends at this many times the length that most ranges keep within.
+constexpr double kEnd = 1.5;
+constexpr double kMost = 0.9;
+// Pairs without a range that are taken for granted at any distance: without pairs to learn
+// from absence means nothing.
+constexpr double kGranted = 3.0;
+// Even where all are in range this part of the pairs may have none, for reasons of their own.
+constexpr double kLeastChance = 0.02;
+
+double longest_of_most(const RangeProblem& problem, const std::vector<bool>& trusted) {
+  std::vector<double> distances;
+  for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
+    if (trusted[p]) distances.push_back(problem.pairs[p].distance);
+  }
+  if (distances.empty()) return 0.0;
+  const auto last = static_cast<double>(distances.size() - 1);
+  const auto nth = distances.begin() + static_cast<std::ptrdiff_t>(kMost * last);
+  std::nth_element(distances.begin(), nth, distances.end());
+  return *nth;
+}
+
+enum class Link { none, trusted, suspected };
+
+Link link_between(const RangeProblem& problem, const std::vector<bool>& trusted, Index a, Index b) {
+  for (const auto& [vertex, edge] : problem.pair_graph.neighbours(a)) {
+    if (vertex == b) return trusted[edge] ? Link::trusted : Link::suspected;
+  }
+  return Link::none;
+}
+
+}  // namespace
+
+// Pairs by distance, with and without a range.
+class Absence::Counts {
+ public:
+  Counts(const RangeProblem& problem, const std::vector<bool>& trusted)
+      : problem_(problem),
+        trusted_(trusted),
+        end_(kEnd * longest_of_most(problem, trusted)),
+        with_(kBins, 0.0),
+        without_(kBins, 0.0) {}
+
+  double end() const { return end_; }
+
+  bool matters(Index a, Index b) const { return !problem_.is_anchor[a] || !problem_.is_anchor[b]; }
+
+  void add(Index a, Index b, double distance) {
+    if (!(distance < end_) || !matters(a, b)) return;
+    const auto bin = std::min(kBins - 1, static_cast<std::size_t>(distance / end_ * kBins));
+    switch (link_between(problem_, trusted_, a, b)) {
+      case Link::none:
+        without_[bin] += 1.0;
+        break;
+      case Link::trusted:
+        with_[bin] += 1.0;
+        break;
+      case Link::suspected:
+        break;
+    }
+  }
+
+  Absence curve() const {
+    Absence result;
+    result.bin_ = end_ / static_cast<double>(kBins);
+    for (std::size_t k = 0; k < kBins; ++k) {
+      const double without = without_[k] + kGranted;
+      const double chance = without / (without + with_[k]);
+      result.costs_.push_back(std::max(0.0, -2.0 * std::log(2.0 * std::max(kLeastChance, chance))));
+      if (result.costs_.back() > 0.0) result.reach_ = result.bin_ * static_cast<double>(k + 1);
+    }
+    return result;
+  }
+
+ private:
+  const RangeProblem& problem_;
+  const std::vector<bool>& trusted_;
+  double end_;
+  std::vector<double> with_;
+  std::vector<double> without_;
+};
+
+Absence Absence::learn(const RangeProblem& problem, const std::vector<bool>& trusted,
+                       const std::vector<Patch>& patches) {
+  Counts counts(problem, trusted);
+  if (!(counts.end() > 0.0)) return {};
+  for (const auto& patch : patches) {
+    for (std::size_t a = 0; a < patch.members.size(); ++a) {
+      for (std::size_t b = a + 1; b < patch.members.size(); ++b) {
+        counts.add(patch.members[a], patch.members[b],
+                   (patch.positions.col(a) - patch.positions.col(b)).norm());
+      }
+    }
+  }
+  return counts.curve();
+}
+
+Absence Absence::learn(const RangeProblem& problem, const std::vector<bool>& trusted,
+                       const Placement& placement) {
+  Counts counts(problem, trusted);
+  std::vector<Index> nodes;
+  for (Index v = 0; v < problem.nodes; ++v) {
+    if (placement.placed[v]) nodes.push_back(v);
+  }
+  if (!(counts.end() > 0.0) || nodes.empty()) return {};
+  const Eigen::MatrixXd points = placement.positions(Eigen::all, nodes);
+  const auto wanted = [&](std::int32_t a, std::int32_t b) {
+    return counts.matters(nodes[a], nodes[b]);
+  };
+  for (const auto& [a, b] : near_pairs(points, counts.end(), wanted)) {
+    counts.add(nodes[a], nodes[b], (points.col(a) - points.col(b)).norm());
+  }
+  return counts.curve();
+}
+
+double Absence::cost(double distance) const {
+  if (distance >= reach_) return 0.0;
+  const double at = distance / bin_ - 0.5;
+  if (at <= 0.0) return costs_.front();
+  const auto k = static_cast<std::size_t>(at);
+  const double next = k + 1 < costs_.size() ? costs_[k + 1] : 0.0;
+  const double share = at - static_cast<double>(k);
+  return (1.0 - share) * costs_[k] + share * next;
+}
+
+}  // namespace isotherm::network::detail

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "isotherm/network/range_network.hpp"
+#include "isotherm/spectral/graph/weighted_graph.hpp"
+
+namespace isotherm::network::detail {
+
+/// All ranges between the same two nodes, as one.
+struct RangePair {
+  Index from = 0;
+  Index to = 0;
+  double distance = 0.0;  ///< median
+  double sigma = 0.0;
+};
+
+/// A network as the stages of localisation see it.
+struct RangeProblem {
+  int dimension = 2;
+  Index nodes = 0;
+  std::vector<RangeMeasurement> ranges;
+  std::vector<double> sigmas;          ///< one a range, > 0; provisional where none was given
+  std::vector<bool> sigma_given;       ///< one a range
+  std::vector<bool> is_anchor;         ///< one a node
+  double typical_distance = 0.0;       ///< median of the ranges
+  double typical_sigma = 0.0;          ///< median of the standard deviations; NaN without ranges
+  std::vector<RangePair> pairs;        ///< by order of first appearance
+  spectral::WeightedGraph pair_graph;  ///< edge k is pair k, of weight 1
+  std::vector<Index> pair_of;          ///< range -> pair
+
+  bool anchored() const;
+};
+
+/// Where nodes are believed to be.
+struct Placement {
+  Eigen::MatrixXd positions;  ///< dimension x nodes; meaningless where not placed
+  std::vector<bool> placed;
+};
+
+/// Some nodes at the columns of `positions`, nothing else.
+Placement place_nodes(const RangeProblem& problem, const std::vector<Index>& nodes,
+                      const Eigen::MatrixXd& positions);
+
+/// How many nodes have a place.
+Index placed_count(const Placement& placement);
+
+/// Whether both ends have one.
+bool is_placed(const Placement& placement, const RangePair& pair);
+
+/// (distance between the places of a pair - its range) / sigma.
+double deviation(const Placement& placement, const RangePair& pair);
+
+/// Its square.
+double squared_deviation(const Placement& placement, const RangePair& pair);
+
+/// Which nodes are at most so many ranges away from one of `nodes`.
+std::vector<bool> within_steps(const RangeProblem& problem, const std::vector<Index>& nodes,
+                               int steps);
+
+/// Whether there is a range between two nodes. O(degree).
+bool has_range(const RangeProblem& problem, Index a, Index b);
+
+/// @throws InvalidArgument as `localize` does
+void check(const RangeNetwork& network);
+
+/// The network must be valid.
+RangeProblem make_problem(const RangeNetwork& network);
+
+/// The anchors where they are, nothing else.
+Placement anchors_only(const RangeNetwork& network, const RangeProblem& problem);
+
+/// Singular values of the columns about their mean, falling.
+Eigen::VectorXd extents(const Eigen::MatrixXd& points);
+
+/// Whether nodes stand clear of every line (plane, in space), so that nothing on them can
+/// be mirrored: by more than the noise of the ranges.
+bool span_space(const RangeProblem& problem, const Placement& placement,
+                const std::vector<Index>& nodes);
+
+/// Whether the anchors, as far as `placement` has them, span space.
+bool anchors_span_space(const RangeProblem& problem, const Placement& placement);
+
+/// The middle one of `values` (the lower of two); NaN if there are none.
+double lower_median(std::vector<double> values);
+
+}  // namespace isotherm::network::detail

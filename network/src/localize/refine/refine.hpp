@@ -1,0 +1,48 @@
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "isotherm/base/progress.hpp"
+#include "localize/problem/range_problem.hpp"
+
+namespace isotherm::network::detail {
+
+/// A range between two nodes in a least-squares problem. A pair of widths, in standard
+/// deviations, of Geman and McClure's loss says how far off it may be: infinite is plain least
+/// squares, 0 no loss at all.
+struct Spring {
+  Index from = 0;
+  Index to = 0;
+  double distance = 0.0;
+  double sigma = 1.0;
+  double width_apart = std::numeric_limits<double>::infinity();  ///< ends farther than `distance`
+  double width_close = std::numeric_limits<double>::infinity();  ///< ends closer than that
+};
+
+struct RefineOptions {
+  /// Width, in standard deviations, of Geman and McClure's loss; infinite for plain
+  /// least squares.
+  double width = std::numeric_limits<double>::infinity();
+  int max_iterations = 100;
+  double still = 1e-8;  ///< relative decrease of the loss at which it ends
+  ProgressCallback progress = {};
+};
+
+struct RefineOutcome {
+  int iterations = 0;
+  bool converged = true;
+};
+
+/// Moves the placed nodes that are no anchors to a minimum of the loss of the ranges
+/// in `use` between placed nodes: reweighted Levenberg-Marquardt steps with a sparse
+/// factorisation each. @throws Cancelled
+RefineOutcome refine(const RangeProblem& problem, const std::vector<bool>& use,
+                     Placement& placement, const RefineOptions& options);
+
+/// The same for the springs between placed nodes, which have widths of their own;
+/// `options.width` does not count.
+RefineOutcome refine(const RangeProblem& problem, const std::vector<Spring>& springs,
+                     Placement& placement, const RefineOptions& options);
+
+}  // namespace isotherm::network::detail

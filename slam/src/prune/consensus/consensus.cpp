@@ -1,0 +1,52 @@
+#include "isotherm/slam/prune/consensus.hpp"
+
+#include <optional>
+
+#include "graph/candidate_verdicts.hpp"
+#include "isotherm/base/error.hpp"
+#include "prune/consensus/pairs/near_pairs.hpp"
+#include "prune/consensus/search/search.hpp"
+
+namespace isotherm::slam {
+
+void ConsensusOptions::validate() const {
+  if (!(significance > 0.0 && significance < 0.5)) {
+    throw InvalidArgument("significance", "must be in (0, 0.5)");
+  }
+  if (window <= 0) throw InvalidArgument("window", "must be positive");
+  if (max_rounds <= 0) throw InvalidArgument("max_rounds", "must be positive");
+}
+
+template <class Pose>
+ConsensusResult consensus(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                          const ConsensusOptions& options) {
+  options.validate();
+  ConsensusResult result;
+  result.verdicts = candidate_verdicts(graph, roles);
+  if (roles.candidates.empty()) return result;
+  const auto reduced = detail::reduce(graph, roles);
+  const auto pairs = detail::near_pairs(reduced, options.window);
+  // False loops among the accepted ones would widen the covariances, and let more in: the
+  // file is taken at its word as long as that explains what is accepted, or proves more.
+  std::optional<detail::Search<Pose>> search;
+  search.emplace(reduced, pairs, options, false);
+  search->run();
+  search->report(result);
+  if (options.calibrate && search->asks_for_wider()) {
+    const auto proven = search->count_proven();
+    search.emplace(reduced, pairs, options, true);
+    search->run();
+    if (search->count_proven() > proven) search->report(result);
+  }
+  for (auto& info : result.details) {
+    for (Index& loop : info.conflicts) loop = roles.candidates[loop];
+  }
+  return result;
+}
+
+template ConsensusResult consensus(const PoseGraph<Pose2>&, const EdgeRoles&,
+                                   const ConsensusOptions&);
+template ConsensusResult consensus(const PoseGraph<Pose3>&, const EdgeRoles&,
+                                   const ConsensusOptions&);
+
+}  // namespace isotherm::slam

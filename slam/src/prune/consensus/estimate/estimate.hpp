@@ -1,0 +1,94 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "isotherm/spectral/sparse/block_cholesky.hpp"
+#include "prune/consensus/estimate/reduced_graph.hpp"
+
+namespace isotherm::slam::detail {
+
+/// Factors on the covariances the file states, as calibrated from the data.
+struct CovarianceScale {
+  double odometry = 1.0;
+  double loops = 1.0;
+};
+
+/// The poses of a reduced graph given odometry and the accepted loops, and the
+/// factor of the normal equations there, from which covariances are read.
+template <class Pose>
+class Estimate {
+ public:
+  using Matrix = typename Pose::Matrix;
+  using Tangent = typename Pose::Tangent;
+
+  /// `graph` must outlive this object. Starts at odometry.
+  explicit Estimate(const ReducedGraph<Pose>& graph);
+
+  /// Gauss-Newton from the present poses, on odometry and the loops whose
+  /// `accepted` entry is true. Parts of the graph that a loop joins for the first
+  /// time are first moved to where it says. Ends once steps stop mattering
+  /// against the covariances, or after `max_steps`.
+  /// @throws NumericalError if the normal equations break down
+  void update(const std::vector<bool>& accepted, const CovarianceScale& scale, int max_steps);
+
+  const std::vector<Pose>& poses() const noexcept { return poses_; }
+
+  /// Where the poses are, without the factor there.
+  struct Layout {
+    std::vector<Pose> poses;
+    std::vector<Index> component;
+  };
+  Layout layout() const { return {poses_, component_}; }
+
+  /// Takes poses back to where they were; update() must follow.
+  void restore(Layout layout);
+
+  /// log(T_measured^-1 T_a^-1 T_b).
+  Tangent residual(const Link<Pose>& link) const;
+
+  /// Whether trusted and accepted links join the ends of `loop`.
+  bool connected(const Link<Pose>& loop) const;
+
+  /// Covariances of T_a^-1 T_b, one each of `loops`, as perturbations on the right, from
+  /// the factor of the last update. The ends of each must be connected.
+  std::vector<Matrix> relative_covariances(std::span<const Index> loops) const;
+
+  /// r' Omega r summed over odometry, in units of the file's covariances.
+  double odometry_cost() const;
+
+  /// Number of connected parts; each has one pose that is held.
+  Index component_count() const noexcept { return component_count_; }
+
+ private:
+  void join_components(const std::vector<bool>& accepted);
+  void hold_one_pose_each();
+  void lay_out(const std::vector<bool>& accepted);
+  Eigen::VectorXd linearise(const CovarianceScale& scale);
+  void add_link(const Link<Pose>& link, double scale, std::ptrdiff_t pair, Eigen::VectorXd& rhs);
+  void retract(const Eigen::VectorXd& step);
+
+  const ReducedGraph<Pose>& graph_;
+  std::vector<Pose> poses_;
+  std::vector<Index> component_;
+  Index component_count_ = 0;
+  std::vector<Index> variable_;  // a node's block, or -1 where it is held
+  Index variable_count_ = 0;
+  std::vector<bool> laid_out_for_;  // loops that the rest belongs to
+  std::vector<Index> active_loops_;
+  std::vector<std::ptrdiff_t> pair_of_;  // steps, then active loops; -1 without a block
+  std::unique_ptr<spectral::BlockCholesky> factor_;
+};
+
+/// The part of log(T_measured^-1 T) that changes with T: J with
+/// log(T_measured^-1 T exp(d)) = r + J d to first order.
+template <class Pose>
+typename Pose::Matrix residual_jacobian(const typename Pose::Tangent& r) {
+  return Pose::right_jacobian_inverse(r);
+}
+
+extern template class Estimate<Pose2>;
+extern template class Estimate<Pose3>;
+
+}  // namespace isotherm::slam::detail

@@ -1,0 +1,86 @@
+#include "prune/consensus/pairs/loop_pair.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+constexpr double kSame = 1e-9;  // of two measurements
+
+template <class Pose>
+UncertainPose<Pose> along(const ReducedGraph<Pose>& graph, const CovarianceScale& scale, Index from,
+                          Index to) {
+  auto path = graph.odometry.relative(from, to);
+  path.covariance *= scale.odometry;
+  return path;
+}
+
+}  // namespace
+
+template <class Pose>
+std::vector<ForwardLoop<Pose>> forward_loops(const ReducedGraph<Pose>& graph,
+                                             const CovarianceScale& scale) {
+  std::vector<ForwardLoop<Pose>> loops;
+  loops.reserve(graph.loops.size());
+  for (const auto& loop : graph.loops) {
+    const Index a = graph.vertex[loop.a];
+    const Index b = graph.vertex[loop.b];
+    const UncertainPose<Pose> measured{loop.T_a_b, loop.covariance * scale.loops};
+    if (a <= b) {
+      loops.push_back({a, b, measured});
+    } else {
+      loops.push_back({b, a, inverse(measured)});
+    }
+  }
+  return loops;
+}
+
+template <class Pose>
+bool is_copy(const Link<Pose>& a, const Link<Pose>& b) {
+  return (a.T_a_b.inverse() * b.T_a_b).log().norm() < kSame && a.T_a_b.log().norm() >= kSame;
+}
+
+template <class Pose>
+Evidence compare(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
+                 const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured,
+                 const MapVolume<Pose>& map) {
+  const auto before = along(graph, scale, measured.from, known.from);
+  const auto after = along(graph, scale, known.to, measured.to);
+  const auto predicted = compose(compose(before, known.measured), after);
+  const typename Pose::Tangent r = (measured.measured.T.inverse() * predicted.T).log();
+  const typename Pose::Matrix j = residual_jacobian<Pose>(r);
+  return weigh(r, measured.measured.covariance + j * predicted.covariance * j.transpose(), map);
+}
+
+template <class Pose>
+std::vector<Evidence> compare_pairs(const ReducedGraph<Pose>& graph,
+                                    const std::vector<std::pair<Index, Index>>& pairs,
+                                    const MapVolume<Pose>& map, const CovarianceScale& scale) {
+  const auto loops = forward_loops(graph, scale);
+  std::vector<Evidence> evidence;
+  evidence.reserve(pairs.size());
+  for (const auto& [first, second] : pairs) {
+    evidence.push_back(compare(graph, scale, loops[first], loops[second], map));
+  }
+  return evidence;
+}
+
+template std::vector<ForwardLoop<Pose2>> forward_loops(const ReducedGraph<Pose2>&,
+                                                       const CovarianceScale&);
+template std::vector<ForwardLoop<Pose3>> forward_loops(const ReducedGraph<Pose3>&,
+                                                       const CovarianceScale&);
+template bool is_copy(const Link<Pose2>&, const Link<Pose2>&);
+template bool is_copy(const Link<Pose3>&, const Link<Pose3>&);
+template Evidence compare(const ReducedGraph<Pose2>&, const CovarianceScale&,
+                          const ForwardLoop<Pose2>&, const ForwardLoop<Pose2>&,
+                          const MapVolume<Pose2>&);
+template Evidence compare(const ReducedGraph<Pose3>&, const CovarianceScale&,
+                          const ForwardLoop<Pose3>&, const ForwardLoop<Pose3>&,
+                          const MapVolume<Pose3>&);
+
+template std::vector<Evidence> compare_pairs(const ReducedGraph<Pose2>&,
+                                             const std::vector<std::pair<Index, Index>>&,
+                                             const MapVolume<Pose2>&, const CovarianceScale&);
+template std::vector<Evidence> compare_pairs(const ReducedGraph<Pose3>&,
+                                             const std::vector<std::pair<Index, Index>>&,
+                                             const MapVolume<Pose3>&, const CovarianceScale&);
+
+}  // namespace isotherm::slam::detail

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "prune/consensus/estimate/estimate.hpp"
+#include "prune/consensus/estimate/map_volume.hpp"
+#include "prune/consensus/estimate/reduced_graph.hpp"
+
+namespace isotherm::slam::detail {
+
+/// A loop stated from the earlier vertex to the later one.
+template <class Pose>
+struct ForwardLoop {
+  Index from = 0;  ///< vertices of the full graph, from <= to
+  Index to = 0;
+  UncertainPose<Pose> measured;  ///< T_from_to
+};
+
+/// Every loop of `graph`, in order, with its covariance calibrated.
+template <class Pose>
+std::vector<ForwardLoop<Pose>> forward_loops(const ReducedGraph<Pose>& graph,
+                                             const CovarianceScale& scale);
+
+/// Whether one loop repeats the measurement of the other. No two measurements are the same
+/// to the last digit: a copy vouches for nothing, and says nothing of how accurate either
+/// is. Only that the robot is back where it was is said the same way by each.
+template <class Pose>
+bool is_copy(const Link<Pose>& a, const Link<Pose>& b);
+
+/// How `measured` compares with what `known` and the two pieces of odometry between
+/// their ends predict. The prediction does not depend on the estimate, nor on how far
+/// odometry has drifted between the two ends of the loops. Both must run between the
+/// same chains.
+template <class Pose>
+Evidence compare(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
+                 const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured,
+                 const MapVolume<Pose>& map);
+
+/// compare() for each of `pairs` of loops, the first as the known one.
+template <class Pose>
+std::vector<Evidence> compare_pairs(const ReducedGraph<Pose>& graph,
+                                    const std::vector<std::pair<Index, Index>>& pairs,
+                                    const MapVolume<Pose>& map, const CovarianceScale& scale);
+
+}  // namespace isotherm::slam::detail

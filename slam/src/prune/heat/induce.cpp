@@ -1,0 +1,65 @@
+#include "isotherm/slam/prune/induce.hpp"
+
+#include "isotherm/base/require.hpp"
+#include "isotherm/slam/prune/odometry_chi2.hpp"
+
+namespace isotherm::slam {
+namespace {
+
+template <class Pose>
+std::vector<double> candidate_weights(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                                      const InductionOptions& options, int threads,
+                                      const ProgressCallback& progress) {
+  const bool both = options.init == Initialisation::both;
+  std::vector<double> weights(roles.candidates.size(), options.loop_weight);
+  if (both || options.init == Initialisation::chi2) {
+    const auto checks = odometry_chi2(graph, roles);
+    for (std::size_t c = 0; c < weights.size(); ++c) {
+      weights[c] /= 1.0 + checks[c].chi2 / Pose::kDof;
+    }
+  }
+  if (both || options.init == Initialisation::lap_line) {
+    const auto evidence = curve_evidence(graph, roles, options.curve, threads, progress);
+    for (std::size_t c = 0; c < weights.size(); ++c) weights[c] *= 1.0 - evidence[c].score;
+  }
+  return weights;
+}
+
+}  // namespace
+
+void InductionOptions::validate() const {
+  require_positive("odometry_weight", odometry_weight);
+  require_positive("loop_weight", loop_weight);
+  curve.validate();
+}
+
+template <class Pose>
+InducedGraph induce(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                    const InductionOptions& options, int threads,
+                    const ProgressCallback& progress) {
+  options.validate();
+  std::vector<double> weight(graph.constraints.size(), options.odometry_weight);
+  const auto candidate_weight = candidate_weights(graph, roles, options, threads, progress);
+  for (std::size_t c = 0; c < candidate_weight.size(); ++c) {
+    weight[roles.candidates[c]] = candidate_weight[c];
+  }
+
+  InducedGraph induced;
+  induced.constraint_edge.assign(graph.constraints.size(), -1);
+  std::vector<spectral::WeightedEdge> edges;
+  for (Index k = 0; k < graph.constraint_count(); ++k) {
+    if (!(weight[k] > 0.0)) continue;
+    induced.constraint_edge[k] = static_cast<Index>(edges.size());
+    induced.edge_constraint.push_back(k);
+    edges.push_back({graph.constraints[k].from, graph.constraints[k].to, weight[k]});
+  }
+  induced.graph = spectral::WeightedGraph(graph.vertex_count(), std::move(edges));
+  return induced;
+}
+
+template InducedGraph induce(const PoseGraph<Pose2>&, const EdgeRoles&, const InductionOptions&,
+                             int, const ProgressCallback&);
+template InducedGraph induce(const PoseGraph<Pose3>&, const EdgeRoles&, const InductionOptions&,
+                             int, const ProgressCallback&);
+
+}  // namespace isotherm::slam

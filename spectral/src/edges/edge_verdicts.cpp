@@ -1,0 +1,12 @@
+#include "isotherm/spectral/edges/edge_verdicts.hpp"
+
+#include <algorithm>
+
+namespace isotherm::spectral {
+
+std::int64_t count(const EdgeVerdicts& verdicts, Verdict verdict) {
+  return std::count_if(verdicts.begin(), verdicts.end(),
+                       [verdict](const EdgeVerdict& v) { return v.verdict == verdict; });
+}
+
+}  // namespace isotherm::spectral

@@ -1,0 +1,107 @@
+#include "edges/two_groups.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace isotherm::spectral::detail {
+namespace {
+
+std::vector<double> sorted_copy(std::span<const double> values) {
+  std::vector<double> sorted(values.begin(), values.end());
+  std::sort(sorted.begin(), sorted.end());
+  return sorted;
+}
+
+double count_from(const std::vector<double>& sorted, double value) {
+  return static_cast<double>(sorted.end() - std::lower_bound(sorted.begin(), sorted.end(), value));
+}
+
+/// Above a quantile of the null scores there are few true ones: what is found there
+/// says how many false ones there are. The least of several quantiles, each with one
+/// standard deviation of its count on top.
+double estimate_false(const std::vector<double>& scores, const std::vector<double>& null_scores) {
+  constexpr std::array kQuantiles = {0.2, 0.3, 0.4, 0.5, 0.6};
+  const auto null_count = static_cast<double>(null_scores.size());
+  auto least = static_cast<double>(scores.size());
+  for (const double quantile : kQuantiles) {
+    const double from = null_scores[static_cast<std::size_t>(quantile * (null_count - 1.0))];
+    const double found = count_from(scores, from);
+    least =
+        std::min(least, (found + std::sqrt(found)) * null_count / count_from(null_scores, from));
+  }
+  return least;
+}
+
+/// Scores that share one value of the regression.
+struct Block {
+  double last = 0.0;    // largest score in it
+  double scores = 0.0;  // how many
+  double nulls = 0.0;   // expected number of false ones among them
+
+  bool suspicious_as(const Block& other) const {
+    return nulls * other.scores >= other.nulls * scores;
+  }
+};
+
+/// Pools neighbours until the false share rises strictly with the score.
+std::vector<Block> regress(const std::vector<double>& scores,
+                           const std::vector<double>& null_scores, double false_count) {
+  const double weight = false_count / static_cast<double>(null_scores.size());
+  std::vector<Block> blocks;
+  std::size_t s = 0, f = 0;
+  while (s < scores.size() || f < null_scores.size()) {
+    const bool null_first =
+        s == scores.size() || (f < null_scores.size() && null_scores[f] < scores[s]);
+    Block block{null_first ? null_scores[f] : scores[s], 0.0, 0.0};
+    for (; s < scores.size() && scores[s] == block.last; ++s) block.scores += 1.0;
+    for (; f < null_scores.size() && null_scores[f] == block.last; ++f) block.nulls += weight;
+    while (!blocks.empty() && blocks.back().suspicious_as(block)) {
+      block.scores += blocks.back().scores;
+      block.nulls += blocks.back().nulls;
+      blocks.pop_back();
+    }
+    blocks.push_back(block);
+  }
+  return blocks;
+}
+
+}  // namespace
+
+TwoGroups separate_groups(std::span<const double> scores, std::span<const double> null_scores) {
+  TwoGroups groups;
+  groups.truth.assign(scores.size(), 1.0);
+  if (scores.empty() || null_scores.empty()) return groups;
+  const auto sorted = sorted_copy(scores);
+  const auto sorted_null = sorted_copy(null_scores);
+  groups.false_count = estimate_false(sorted, sorted_null);
+  if (groups.false_count == 0.0) return groups;
+  const auto blocks = regress(sorted, sorted_null, groups.false_count);
+  for (std::size_t k = 0; k < scores.size(); ++k) {
+    const auto block = std::lower_bound(blocks.begin(), blocks.end(), scores[k],
+                                        [](const Block& b, double x) { return b.last < x; });
+    groups.truth[k] = std::max(0.0, 1.0 - block->nulls / block->scores);
+  }
+  return groups;
+}
+
+std::vector<Index> by_suspicion(std::span<const double> scores) {
+  std::vector<Index> order(scores.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return scores[a] > scores[b]; });
+  return order;
+}
+
+double rejection_threshold(std::span<const double> scores, const TwoGroups& groups, double chance) {
+  const auto order = by_suspicion(scores);
+  // The probability falls with the score, so that a score stands for it.
+  const auto most = std::min(static_cast<std::size_t>(std::ceil(groups.false_count)), order.size());
+  std::size_t rejected = 0;
+  while (rejected < most && groups.truth[order[rejected]] < chance) ++rejected;
+  if (rejected == 0) return std::numeric_limits<double>::infinity();
+  return rejected < order.size() ? scores[order[rejected]] : 0.0;
+}
+
+}  // namespace isotherm::spectral::detail

@@ -1,0 +1,76 @@
+#include "isotherm/spectral/edges/verdict_file.hpp"
+
+#include <limits>
+#include <string_view>
+
+#include "isotherm/base/csv.hpp"
+#include "isotherm/base/csv_enum.hpp"
+#include "isotherm/base/text_writer.hpp"
+
+namespace isotherm::spectral {
+namespace {
+
+constexpr std::string_view kHeader = "edge,from,to,verdict,score,threshold,stage\n";
+
+// A score or threshold may be infinite (nothing was split, say), which CSV
+// numbers elsewhere must not be.
+double score_field(const CsvReader& csv, std::size_t column, std::string_view what) {
+  const auto text = csv.text(column, what);
+  if (text == "inf") return std::numeric_limits<double>::infinity();
+  if (text == "-inf") return -std::numeric_limits<double>::infinity();
+  return csv.number(column, what);
+}
+
+}  // namespace
+
+void write_verdicts(const std::string& path, const EdgeVerdicts& verdicts) {
+  OutputFile file(path);
+  std::string row;
+  file.write(kHeader);
+  for (const auto& verdict : verdicts) {
+    row.clear();
+    append_number(row, verdict.edge);
+    row += ',';
+    append_number(row, verdict.from);
+    row += ',';
+    append_number(row, verdict.to);
+    row += ',';
+    row += enum_name(verdict.verdict);
+    row += ',';
+    append_number(row, verdict.score);
+    row += ',';
+    append_number(row, verdict.threshold);
+    row += ',';
+    row += verdict.stage;
+    row += '\n';
+    file.write(row);
+  }
+  file.commit();
+}
+
+EdgeVerdicts read_verdicts(const std::string& path) {
+  CsvReader csv(path);
+  EdgeVerdicts verdicts;
+  if (!csv.next_row()) return verdicts;
+  const auto edge = csv.column("edge", 0);
+  const auto from = csv.column("from", 1);
+  const auto to = csv.column("to", 2);
+  const auto decided = csv.column("verdict", 3);
+  const auto score = csv.column("score", 4);
+  const auto threshold = csv.column("threshold", 5);
+  const auto stage = csv.column("stage", 6);
+  do {
+    EdgeVerdict row;
+    row.edge = static_cast<std::int64_t>(csv.unsigned_integer(edge, "edge"));
+    row.from = csv.unsigned_integer(from, "from");
+    row.to = csv.unsigned_integer(to, "to");
+    row.verdict = csv_enum<Verdict>(csv, decided, "verdict");
+    row.score = score_field(csv, score, "score");
+    row.threshold = score_field(csv, threshold, "threshold");
+    row.stage = csv.text(stage, "stage");
+    verdicts.push_back(std::move(row));
+  } while (csv.next_row());
+  return verdicts;
+}
+
+}  // namespace isotherm::spectral

@@ -1,0 +1,45 @@
+#include "sparse/dense_kernels.hpp"
+
+extern "C" {
+void dgemm_(const char* trans_a, const char* trans_b, const int* rows, const int* columns,
+            const int* inner, const double* alpha, const double* a, const int* lda, const double* b,
+            const int* ldb, const double* beta, double* c, const int* ldc);
+void dtrsm_(const char* side, const char* triangle, const char* trans, const char* diagonal,
+            const int* rows, const int* columns, const double* alpha, const double* a,
+            const int* lda, double* b, const int* ldb);
+}
+
+namespace isotherm::spectral {
+
+void add_product(DenseView C, double scale, const ConstDenseView& A, const ConstDenseView& B) {
+  if (C.size() == 0 || A.cols() == 0) return;
+  const int rows = static_cast<int>(C.rows());
+  const int columns = static_cast<int>(C.cols());
+  const int inner = static_cast<int>(A.cols());
+  const int lda = static_cast<int>(A.outerStride());
+  const int ldb = static_cast<int>(B.outerStride());
+  const int ldc = static_cast<int>(C.outerStride());
+  const double one = 1.0;
+  dgemm_("N", "N", &rows, &columns, &inner, &scale, A.data(), &lda, B.data(), &ldb, &one, C.data(),
+         &ldc);
+}
+
+namespace {
+
+void solve_triangle(const char* side, const ConstDenseView& L, DenseView X) {
+  if (X.size() == 0) return;
+  const int rows = static_cast<int>(X.rows());
+  const int columns = static_cast<int>(X.cols());
+  const int ldl = static_cast<int>(L.outerStride());
+  const int ldx = static_cast<int>(X.outerStride());
+  const double one = 1.0;
+  dtrsm_(side, "L", "N", "N", &rows, &columns, &one, L.data(), &ldl, X.data(), &ldx);
+}
+
+}  // namespace
+
+void solve_lower(const ConstDenseView& L, DenseView X) { solve_triangle("L", L, X); }
+
+void solve_lower_from_right(const ConstDenseView& L, DenseView X) { solve_triangle("R", L, X); }
+
+}  // namespace isotherm::spectral

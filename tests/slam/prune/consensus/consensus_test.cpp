@@ -1,0 +1,531 @@
+#include "isotherm/slam/prune/consensus.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "isotherm/base/error.hpp"
+#include "isotherm/base/statistics.hpp"
+#include "isotherm/slam/evaluate/evaluate_loops.hpp"
+#include "isotherm/slam/io/pose_graph_file.hpp"
+#include "isotherm/slam/optimize/optimize.hpp"
+#include "isotherm/slam/prune/prune.hpp"
+#include "isotherm/slam/simulate/corrupt.hpp"
+#include "isotherm/slam/simulate/simulate.hpp"
+#include "isotherm_test/data.hpp"
+#include "slam/loop_graph.hpp"
+
+namespace isotherm::slam {
+namespace {
+
+using isotherm_test::random_loop_graph;
+using isotherm_test::random_tangent;
+using spectral::Verdict;
+
+/// What consensus makes of simulated loops with false ones among them.
+template <class Pose>
+LoopMetrics metrics_of(const Simulation<Pose>& made, const CorruptOptions& options) {
+  const auto bad = corrupt(made.graph, made.truth, options);
+  return evaluate_loops(consensus(bad.graph, edge_roles(bad.graph)).verdicts, bad.labels);
+}
+
+template <class Pose>
+class ConsensusOf : public testing::Test {};
+using Poses = testing::Types<Pose2, Pose3>;
+TYPED_TEST_SUITE(ConsensusOf, Poses);
+
+TYPED_TEST(ConsensusOf, KeepsACleanGraphAsItIs) {
+  using Pose = TypeParam;
+  Random random(31);
+  const auto made = random_loop_graph<Pose>(random, 80, 40, 1.0);
+  const auto result = consensus(made.graph, edge_roles(made.graph));
+  EXPECT_EQ(count(result.verdicts, Verdict::keep), 40);
+  EXPECT_TRUE(result.settled);
+  EXPECT_LT(result.odometry_scale, 1.5);
+  EXPECT_LT(result.loop_scale, 1.5);
+  EXPECT_EQ(result.tail_factor, 4.0) << "forty loops do not show that tails are light";
+}
+
+TYPED_TEST(ConsensusOf, FindsFalseLoops) {
+  using Pose = TypeParam;
+  Random random(32);
+  const auto made = random_loop_graph<Pose>(random, 80, 30, 1.0);
+  for (const auto type : {NoiseType::random, NoiseType::random_grouped}) {
+    const auto bad = corrupt(made.graph, made.truth,
+                             {.style = NoiseStyle::paper, .type = type, .count = 60, .seed = 3});
+    const auto result = consensus(bad.graph, edge_roles(bad.graph));
+    const auto metrics = evaluate_loops(result.verdicts, bad.labels);
+    EXPECT_EQ(metrics.precision(), 1.0);
+    EXPECT_EQ(metrics.recall(), 1.0);
+    for (std::size_t k = 0; k < result.verdicts.size(); ++k) {
+      const auto& verdict = result.verdicts[k];
+      EXPECT_EQ(verdict.verdict == Verdict::prune, verdict.score > verdict.threshold);
+      EXPECT_EQ(verdict.verdict == Verdict::keep, result.details[k].round > 0);
+      EXPECT_EQ(verdict.score, result.details[k].chi2);
+      EXPECT_EQ(verdict.verdict == Verdict::prune, !result.details[k].conflicts.empty());
+      EXPECT_LE(result.details[k].conflicts.size(), 3u);
+      for (const Index other : result.details[k].conflicts) {
+        EXPECT_TRUE(std::ranges::any_of(result.verdicts, [other](const auto& kept) {
+          return kept.edge == other && kept.verdict == Verdict::keep;
+        }));
+      }
+    }
+  }
+}
+
+// Two robots that share no odometry: only loops that confirm each other can join
+// them, and a false one among them must not.
+TYPED_TEST(ConsensusOf, JoinsRobotsByLoopsThatConfirmEachOther) {
+  using Pose = TypeParam;
+  Random random(33);
+  auto made = random_loop_graph<Pose>(random, 60, 0, 0.1);
+  made.graph.constraints.erase(made.graph.constraints.begin() + 29);
+  for (Index v = 0; v < 60; ++v) made.graph.ids[v] = (v < 30 ? 'a' : 'b') * (1ull << 56) + v;
+  for (Index k = 3; k < 27; k += 3) {
+    Constraint<Pose> loop{k, k + 30, made.truth[k].inverse() * made.truth[k + 30]};
+    loop.information = 1e4 * Pose::Matrix::Identity();
+    made.graph.constraints.push_back(loop);
+  }
+  typename Pose::Tangent xi = Pose::Tangent::Zero();
+  xi[1] = 20.0;
+  auto& wrong = made.graph.constraints.back();
+  wrong.T_from_to = wrong.T_from_to * Pose::exp(xi);
+
+  const auto result = consensus(made.graph, edge_roles(made.graph));
+  EXPECT_EQ(count(result.verdicts, Verdict::keep), 7);
+  EXPECT_EQ(result.verdicts.back().verdict, Verdict::prune);
+}
+
+TYPED_TEST(ConsensusOf, OneLoopBetweenTwoRobotsIsNeitherProvenNorRefuted) {
+  using Pose = TypeParam;
+  Random random(34);
+  auto made = random_loop_graph<Pose>(random, 20, 0, 0.1);
+  made.graph.constraints.erase(made.graph.constraints.begin() + 9);
+  made.graph.constraints.push_back({2, 15, Pose(), Pose::Matrix::Identity()});
+  const auto result = consensus(made.graph, edge_roles(made.graph));
+  EXPECT_EQ(result.verdicts.front().verdict, Verdict::ambiguous);
+  EXPECT_FALSE(result.details.front().connected);
+}
+
+TYPED_TEST(ConsensusOf, LearnsThatInformationIsOverconfident) {
+  using Pose = TypeParam;
+  Random random(35);
+  auto made = random_loop_graph<Pose>(random, 100, 150, 1.0);
+  for (const Index k : edge_roles(made.graph).candidates) {
+    made.graph.constraints[k].information *= 4.0;  // half the true deviations
+  }
+  const auto result = consensus(made.graph, edge_roles(made.graph), {.significance = 1e-6});
+  EXPECT_NEAR(result.loop_scale, 4.0, 1.0);
+  EXPECT_LT(result.odometry_scale, 1.5);
+  EXPECT_GE(count(result.verdicts, Verdict::keep), 148);
+}
+
+// Every loop that is kept fits the least-squares solution of what is kept, found by
+// another solver: nothing accepted early is left unchecked once loops are dropped or
+// the scales change.
+TYPED_TEST(ConsensusOf, WhatIsKeptFitsItsOptimum) {
+  using Pose = TypeParam;
+  Random random(41);
+  auto made = random_loop_graph<Pose>(random, 120, 60, 1.0);
+  const auto bad =
+      corrupt(made.graph, made.truth, {.type = NoiseType::random_grouped, .count = 120, .seed = 7});
+  const auto result = consensus(bad.graph, edge_roles(bad.graph));
+  auto kept = bad.graph;
+  std::vector<bool> pruned(kept.constraints.size(), false);
+  for (const auto& verdict : result.verdicts)
+    pruned[verdict.edge] = verdict.verdict != Verdict::keep;
+  kept.constraints.clear();
+  for (std::size_t k = 0; k < pruned.size(); ++k) {
+    if (!pruned[k]) kept.constraints.push_back(bad.graph.constraints[k]);
+  }
+  const auto optimum = optimize(kept);
+  for (std::size_t k = 0; k < kept.constraints.size(); ++k) {
+    EXPECT_LE(optimum.chi2[static_cast<Eigen::Index>(k)],
+              4.0 * chi_squared_quantile(0.9999, Pose::kDof))
+        << k;
+  }
+}
+
+// Odometry with one bad step, of which it says that it is bad: a false loop across it
+// that repeats the mistake fits best at first, and two true ones are turned away by it.
+TEST(Consensus, TwoTrueLoopsOutweighAFalseBridge) {
+  using Pose = Pose2;
+  using Tangent = Pose::Tangent;
+  Random random(43);
+  auto graph = isotherm_test::random_chain<Pose>(random, 40);
+  std::vector<Pose> truth(40);
+  for (Index v = 0; v + 1 < 40; ++v) {
+    Tangent xi = Tangent::Zero();
+    xi[0] = 1.0;
+    xi[Pose::kDof - 1] = 0.1;
+    truth[v + 1] = truth[v] * Pose::exp(xi);
+    graph.constraints[v] = {v, v + 1, Pose::exp(xi), 1e6 * Pose::Matrix::Identity()};
+  }
+  auto& bad = graph.constraints[19];
+  Tangent wrong = Tangent::Zero();
+  wrong[0] = 6.0;
+  bad.T_from_to = bad.T_from_to * Pose::exp(wrong);
+  bad.information.diagonal().head<Pose::kDim>().setConstant(1.0 / 16.0);
+  const auto add = [&](Index from, Index to, const Pose& T) {
+    graph.constraints.push_back({from, to, T, 1e4 * Pose::Matrix::Identity()});
+  };
+  const auto measured = [&](Index from, Index to) { return truth[from].inverse() * truth[to]; };
+  for (const auto& [from, to] : {std::pair{0, 10}, {3, 15}, {22, 33}, {25, 39}, {2, 38}, {8, 30}}) {
+    add(from, to, measured(from, to));
+  }
+  const Pose moved = truth[20] * Pose::exp(wrong) * truth[20].inverse();
+  add(5, 35, truth[5].inverse() * moved * truth[35]);
+  const auto result = consensus(graph, edge_roles(graph), {.calibrate = false});
+  EXPECT_EQ(count(result.verdicts, Verdict::keep), 6);
+  EXPECT_EQ(result.verdicts.back().verdict, Verdict::prune);
+}
+
+// Early on a false loop or two may be among the accepted ones, and would widen the scales.
+TEST(Consensus, TakesAFileAtItsWordWhereThatExplainsTheLoops) {
+  const auto city = simulate_city(
+      {.poses = 150, .measurements = {.loops = 60, .odometry_turn_sigma = 0.02}, .seed = 2});
+  const auto bad = corrupt(city.graph, city.truth, {.fraction = 0.9, .seed = 2});
+  const auto result = consensus(bad.graph, edge_roles(bad.graph));
+  const auto metrics = evaluate_loops(result.verdicts, bad.labels);
+  EXPECT_EQ(metrics.precision(), 1.0);
+  EXPECT_GE(metrics.recall(), 0.995);
+  EXPECT_EQ(result.odometry_scale, 1.0);
+  EXPECT_EQ(result.loop_scale, 1.0);
+}
+
+/// A grid so coarse that odometry predicts next to no loop.
+Simulation<Pose3> coarse_grid(std::int64_t poses, std::uint64_t seed) {
+  return simulate_grid3d({.poses = poses,
+                          .measurements = {.loops = poses / 2,
+                                           .odometry_sigma = 0.1,
+                                           .odometry_turn_sigma = 0.2,
+                                           .loop_sigma = 0.1,
+                                           .loop_turn_sigma = 0.2},
+                          .seed = seed});
+}
+
+// With odometry 25 times as uncertain as stated a map shrunk to a point would explain all
+// the loops, nine in ten of which are false.
+TEST(Consensus, AMapThatProvesNothingIsNoExplanation) {
+  const auto metrics =
+      metrics_of(coarse_grid(60, 2), {.type = NoiseType::local, .fraction = 0.9, .seed = 2});
+  EXPECT_GE(metrics.precision(), 0.9);
+  EXPECT_GE(metrics.recall(), 0.9);
+}
+
+// Held to the gate of all, one in eight of the false loops would pass, and one in thirteen.
+TEST(Consensus, LoopsAmongFalseOnesMustFitBetter) {
+  using Case = std::pair<NoiseType, std::uint64_t>;
+  for (const auto& [type, seed] : {Case(NoiseType::local, 6), Case(NoiseType::random_grouped, 3)}) {
+    const auto metrics =
+        metrics_of(coarse_grid(40, seed), {.type = type, .fraction = 0.9, .seed = seed});
+    EXPECT_GE(metrics.precision(), 0.99);
+    EXPECT_GE(metrics.recall(), 0.97);
+  }
+}
+
+// A file may claim far less of its edges than they deserve.
+TEST(Consensus, LearnsThatAFileIsUnderconfident) {
+  auto city = simulate_city({.poses = 800, .measurements = {.loops = 300}, .seed = 3});
+  for (auto& constraint : city.graph.constraints) constraint.information *= 1e-3;
+  const auto bad = corrupt(city.graph, city.truth, {.fraction = 0.5, .seed = 3});
+  const auto result = consensus(bad.graph, edge_roles(bad.graph));
+  const auto metrics = evaluate_loops(result.verdicts, bad.labels);
+  EXPECT_LT(result.odometry_scale, 0.1);
+  EXPECT_LT(result.loop_scale, 0.1);
+  EXPECT_GE(result.loop_scale, 1e-3) << "loops are tightened no further than they deserve";
+  EXPECT_LT(result.tail_factor, 4.0) << "errors are Gaussian";
+  EXPECT_GE(metrics.precision(), 0.99);
+  EXPECT_GE(metrics.recall(), 0.99);
+}
+
+// Loops between near poses that odometry ties far better, and that are wrong by three
+// times what they claim, are no measure of odometry or of the loops that hold the map.
+TEST(Consensus, SloppyLoopsBetweenNearPosesDoNotWidenTheScales) {
+  Random random(12);
+  auto city = simulate_city({.poses = 800, .measurements = {.loops = 150}, .seed = 5});
+  for (int k = 0; k < 300; ++k) {
+    Constraint<Pose2> near;
+    near.from = static_cast<Index>(random.index(790));
+    near.to = near.from + 2 + static_cast<Index>(random.index(6));
+    const Pose2::Tangent sigma(0.3, 0.3, 0.1);
+    near.information = sigma.cwiseAbs2().cwiseInverse().asDiagonal();
+    const Pose2::Tangent error = 3.0 * sigma.cwiseProduct(random_tangent<Pose2>(random, 1.0));
+    near.T_from_to = city.truth[near.from].inverse() * city.truth[near.to] * Pose2::exp(error);
+    city.graph.constraints.push_back(near);
+  }
+  const auto result = consensus(city.graph, edge_roles(city.graph));
+  EXPECT_LT(result.odometry_scale, 1.5);
+  EXPECT_LT(result.loop_scale, 1.5);
+  for (std::size_t k = 0; k < 150; ++k) EXPECT_EQ(result.verdicts[k].verdict, Verdict::keep);
+}
+
+// A front end may copy a loop along odometry; the copies close perfect cycles with it,
+// which say nothing of how accurate odometry is.
+TEST(Consensus, CopiedLoopsDoNotVouchForOdometry) {
+  auto city =
+      simulate_city({.poses = 600, .measurements = {.loops = 60, .drift = 10.0}, .seed = 6});
+  auto& constraints = city.graph.constraints;
+  const auto roles = edge_roles(city.graph);
+  std::vector<Pose2> step(600);
+  for (const Index k : roles.odometry) step[constraints[k].from] = constraints[k].T_from_to;
+  for (const Index k : roles.candidates) {
+    auto copy = constraints[k];
+    for (int n = 0; n < 4 && std::max(copy.from, copy.to) + 1 < 600; ++n) {
+      copy.T_from_to = step[copy.from++].inverse() * copy.T_from_to * step[copy.to++];
+      if (std::abs(copy.to - copy.from) > 1) constraints.push_back(copy);
+    }
+  }
+  const auto result = consensus(city.graph, edge_roles(city.graph));
+  EXPECT_EQ(count(result.verdicts, Verdict::keep),
+            static_cast<std::int64_t>(result.verdicts.size()));
+}
+
+// All errors are a thirtieth of what the file states: true loops end well inside the gate,
+// and false ones between near poses begin there.
+TEST(Consensus, FalseLoopsThatCrowdAroundTheGateDoNotPass) {
+  auto city = simulate_city({.poses = 2000, .measurements = {.loops = 600}, .seed = 4});
+  for (auto& constraint : city.graph.constraints) constraint.information *= 1e-3;
+  const auto metrics = metrics_of(city, {.type = NoiseType::local, .fraction = 0.5, .seed = 4});
+  EXPECT_GE(metrics.precision(), 0.995);
+  EXPECT_GE(metrics.recall(), 0.995);
+}
+
+// Odometry in pieces of ten poses, with edges that skip a pose where a step is missing.
+TEST(Consensus, JoinsBrokenOdometryByShortLoops) {
+  Random random(42);
+  auto city = simulate_city({.poses = 600, .measurements = {.loops = 200}, .seed = 4});
+  auto& constraints = city.graph.constraints;
+  const auto step = constraints.front();
+  std::erase_if(constraints, [](const auto& c) { return c.to == c.from + 1 && c.to % 10 == 0; });
+  const auto add = [&](Index from, Index to) {
+    auto skip = step;
+    skip.from = from;
+    skip.to = to;
+    skip.T_from_to = city.truth[from].inverse() * city.truth[to];
+    constraints.push_back(skip);
+  };
+  for (Index v = 10; v + 1 < 600; v += 10) {
+    add(v - 2, v);
+    add(v - 1, v + 1);
+    add(v - 1, v + 1);
+  }
+  for (Index v = 1; v + 2 < 600; ++v) add(v, v + 2);
+  const auto bad = corrupt(city.graph, city.truth, {.fraction = 0.3, .seed = 4});
+  const auto result = consensus(bad.graph, edge_roles(bad.graph));
+  const auto metrics = evaluate_loops(result.verdicts, bad.labels);
+  EXPECT_GE(metrics.precision(), 0.99);
+  EXPECT_GE(metrics.recall(), 0.99);
+  EXPECT_EQ(count(result.verdicts, Verdict::ambiguous), 0);
+}
+
+// The same with a single edge over each gap, which no other confirms: it is the fraction
+// of true loops among those as short that speaks for it.
+TEST(Consensus, JoinsBrokenOdometryByTheSpanOfLoops) {
+  auto city = simulate_city({.poses = 600, .measurements = {.loops = 200}, .seed = 8});
+  auto& constraints = city.graph.constraints;
+  const auto step = constraints.front();
+  std::erase_if(constraints, [](const auto& c) { return c.to == c.from + 1 && c.to % 20 == 0; });
+  for (Index v = 1; v + 2 < 600; ++v) {
+    if (v % 20 == 18) continue;
+    auto skip = step;
+    skip.from = v;
+    skip.to = v + 2;
+    skip.T_from_to = city.truth[v].inverse() * city.truth[v + 2];
+    constraints.push_back(skip);
+  }
+  const auto bad = corrupt(city.graph, city.truth, {.fraction = 0.5, .seed = 8});
+  const auto result = consensus(bad.graph, edge_roles(bad.graph));
+  const auto metrics = evaluate_loops(result.verdicts, bad.labels);
+  EXPECT_GE(metrics.precision(), 0.99);
+  EXPECT_GE(metrics.recall(), 0.99);
+  EXPECT_EQ(count(result.verdicts, Verdict::ambiguous), 0);
+  EXPECT_TRUE(std::ranges::any_of(result.rounds, [](const auto& r) { return r.rule == "span"; }));
+}
+
+// One step of odometry is missing, and false loops come in groups that agree as true ones
+// do: what joins the two parts is decided by the loops elsewhere that it lets be proven.
+TEST(Consensus, JoinsPartsByWhatLoopsElsewhereConfirm) {
+  auto city = simulate_city({.poses = 1200, .measurements = {.loops = 400}, .seed = 9});
+  std::erase_if(city.graph.constraints, [](const auto& c) { return c.from == 599 && c.to == 600; });
+  const CorruptOptions hardly_clustered = {
+      .type = NoiseType::random_grouped, .fraction = 0.5, .seed = 9};
+  const CorruptOptions large_groups = {
+      .type = NoiseType::random_grouped, .fraction = 0.7, .group_size = 20, .seed = 10};
+  for (const auto& [options, window] : {std::pair(hardly_clustered, 3), {large_groups, 20}}) {
+    const auto bad = corrupt(city.graph, city.truth, options);
+    const auto result = consensus(bad.graph, edge_roles(bad.graph), {.window = window});
+    const auto metrics = evaluate_loops(result.verdicts, bad.labels);
+    EXPECT_EQ(metrics.precision(), 1.0);
+    EXPECT_EQ(metrics.recall(), 1.0);
+    EXPECT_EQ(count(result.verdicts, Verdict::ambiguous), 0);
+    EXPECT_TRUE(
+        std::ranges::any_of(result.rounds, [](const auto& r) { return r.rule == "trial"; }));
+  }
+}
+
+// Ten loops join two lines. Three more, on the other side of a map that can give way, are
+// each 1.2 times beyond the gate of what those say, but fit together with them.
+TEST(Consensus, LoopsThatSayTheSameAreReadmittedTogether) {
+  const Index length = 60;
+  const double deviation = 1e-3;
+  const Pose2::Matrix precise = 1e12 * Pose2::Matrix::Identity();
+  PoseGraph<Pose2> graph;
+  for (Index v = 0; v < 2 * length; ++v) {
+    graph.ids.push_back((v < length ? 'a' : 'b') * (1ull << 56) + static_cast<std::uint64_t>(v));
+    graph.poses.push_back(Pose2(v % length, 0.0, 0.0));
+    if (v % length == 0) continue;
+    graph.constraints.push_back({v - 1, v, Pose2(1.0, 0.0, 0.0), precise});
+  }
+  const double gate = chi_squared_quantile(1.0 - 1e-4, 3);
+  const auto join = [&](Index k, double off) {
+    Pose2::Matrix information = precise;
+    information.topLeftCorner<2, 2>() = Eigen::Matrix2d::Identity() / (deviation * deviation);
+    graph.constraints.push_back({k, k + length, Pose2(0.0, 5.0 + off, 0.0), information});
+  };
+  // Ten loops predict one more with a tenth of its variance.
+  const double off = deviation * std::sqrt(1.2 * gate * 11.0 / 10.0);
+  for (Index k = 0; k < 10; ++k) join(k, 1e-5 * k);
+  for (Index k = 40; k < 43; ++k) join(k, off + 1e-5 * k);
+  const auto kept = [&] {
+    return count(consensus(graph, edge_roles(graph), {.calibrate = false}).verdicts, Verdict::keep);
+  };
+  EXPECT_EQ(kept(), 13);
+  graph.constraints.pop_back();
+  graph.constraints.pop_back();
+  EXPECT_EQ(kept(), 10) << "one alone stays refuted";
+}
+
+// Odometry is so wide that a loop at the very gate is likelier to be anywhere on the map.
+TEST(Consensus, WhatEvidenceSpeaksAgainstIsHeldToAStricterGate) {
+  const Index steps = 19;
+  PoseGraph<Pose2> graph;
+  for (Index v = 0; v <= steps; ++v) {
+    graph.ids.push_back(static_cast<std::uint64_t>(v));
+    graph.poses.push_back(Pose2(v, 0.0, 0.0));
+    if (v == 0) continue;
+    const Pose2::Tangent information(4.0, 4.0, 1e8);
+    graph.constraints.push_back({v - 1, v, Pose2(1.0, 0.0, 0.0), information.asDiagonal()});
+  }
+  for (const auto& [chi2, verdict] : {std::pair(17.0, Verdict::prune), {12.0, Verdict::keep}}) {
+    const Pose2 measured(steps, std::sqrt(chi2 * steps / 4.0), 0.0);
+    graph.constraints.push_back({0, steps, measured, 1e4 * Pose2::Matrix::Identity()});
+    const auto result = consensus(graph, edge_roles(graph), {.calibrate = false});
+    EXPECT_NEAR(result.verdicts.front().score, chi2, 0.01 * chi2);
+    EXPECT_EQ(result.verdicts.front().verdict, verdict) << chi2;
+    graph.constraints.pop_back();
+  }
+}
+
+TYPED_TEST(ConsensusOf, DegenerateGraphs) {
+  using Pose = TypeParam;
+  PoseGraph<Pose> graph;
+  EXPECT_TRUE(consensus(graph, edge_roles(graph)).verdicts.empty());
+
+  Random random(36);
+  graph = isotherm_test::random_chain<Pose>(random, 10);
+  EXPECT_TRUE(consensus(graph, edge_roles(graph)).verdicts.empty()) << "no candidate";
+
+  // A loop from a pose to itself, one that claims nothing, a repeated step.
+  graph.constraints.push_back({4, 4, Pose(), Pose::Matrix::Identity()});
+  graph.constraints.push_back({1, 8, Pose(), Pose::Matrix::Zero()});
+  graph.constraints.push_back(graph.constraints.front());
+  const auto result = consensus(graph, edge_roles(graph));
+  ASSERT_EQ(result.verdicts.size(), 3u);
+  EXPECT_EQ(count(result.verdicts, Verdict::prune), 0);
+
+  graph.constraints.back().information(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(consensus(graph, edge_roles(graph)), NumericalError);
+}
+
+TYPED_TEST(ConsensusOf, ProgressIsReportedAndCanCancel) {
+  using Pose = TypeParam;
+  Random random(37);
+  const auto made = random_loop_graph<Pose>(random, 60, 30, 1.0);
+  const auto roles = edge_roles(made.graph);
+  int calls = 0;
+  ConsensusOptions options;
+  options.progress = [&calls](const Progress& progress) {
+    EXPECT_LE(progress.done, progress.total);
+    ++calls;
+    return true;
+  };
+  const auto result = consensus(made.graph, roles, options);
+  EXPECT_GE(calls, 2 * static_cast<int>(result.rounds.size()));
+  options.progress = [](const Progress&) { return false; };
+  EXPECT_THROW(consensus(made.graph, roles, options), Cancelled);
+}
+
+TEST(Consensus, SameVerdictsForAnyNumberOfThreads) {
+  const auto city =
+      simulate_city({.poses = 400, .measurements = {.loops = 150, .drift = 10.0}, .seed = 5});
+  const auto bad =
+      corrupt(city.graph, city.truth, {.type = NoiseType::random_grouped, .count = 150, .seed = 5});
+  const auto roles = edge_roles(bad.graph);
+  const auto one = prune(bad.graph, roles, {.threads = 1});
+  const auto two = prune(bad.graph, roles, {.threads = 2});
+  for (std::size_t k = 0; k < one.verdicts.size(); ++k) {
+    EXPECT_EQ(one.verdicts[k].verdict, two.verdicts[k].verdict);
+    EXPECT_EQ(one.verdicts[k].score, two.verdicts[k].score);
+    EXPECT_EQ(one.verdicts[k].stage, two.verdicts[k].stage);
+  }
+}
+
+TEST(Consensus, SurvivesDriftAndGroupsInACity) {
+  const auto city = simulate_city({.poses = 1500, .measurements = {.drift = 20.0}, .seed = 1});
+  for (const std::int64_t size : {5, 20}) {
+    const auto metrics = metrics_of(
+        city, {.type = NoiseType::random_grouped, .fraction = 0.5, .group_size = size, .seed = 1});
+    EXPECT_GE(metrics.precision(), 0.99);
+    EXPECT_GE(metrics.recall(), 0.99);
+  }
+}
+
+TYPED_TEST(ConsensusOf, WithoutInformationPruneFallsBackOnHeat) {
+  using Pose = TypeParam;
+  Random random(38);
+  auto made = random_loop_graph<Pose>(random, 30, 10, 0.0);
+  for (auto& constraint : made.graph.constraints) constraint.information.setZero();
+  const auto result = prune(made.graph, edge_roles(made.graph));
+  EXPECT_EQ(result.method, PruneMethod::heat);
+  EXPECT_THAT(result.warnings, testing::Contains(testing::HasSubstr("heat distances")));
+}
+
+TEST(Consensus, OptionsAreChecked) {
+  const PoseGraph<Pose2> graph;
+  const EdgeRoles roles;
+  EXPECT_THROW(consensus(graph, roles, {.significance = 0.0}), InvalidArgument);
+  EXPECT_THROW(consensus(graph, roles, {.significance = 0.5}), InvalidArgument);
+  EXPECT_THROW(consensus(graph, roles, {.window = 0}), InvalidArgument);
+  EXPECT_THROW(consensus(graph, roles, {.max_rounds = 0}), InvalidArgument);
+}
+
+// The sums of distances are those of the files: nothing true is lost on clean data.
+TEST(Consensus, KeepsRealCleanGraphs) {
+  for (const std::string name : {"posegraph2d/MIT/MIT", "posegraph2d/CSAIL/CSAIL",
+                                 "posegraph2d/intel/intel", "paper/kitti/kitti_09"}) {
+    ISOTHERM_REAL_DATA_OR_SKIP(path, name + ".g2o");
+    const auto file = read_pose_graph(path.string());
+    const auto& graph = std::get<PoseGraph<Pose2>>(file.graph);
+    const auto result = consensus(graph, edge_roles(graph));
+    EXPECT_EQ(count(result.verdicts, Verdict::keep),
+              static_cast<std::int64_t>(result.verdicts.size()))
+        << name;
+  }
+}
+
+TEST(Consensus, FindsGroupedFalseLoopsOfRingCity) {
+  ISOTHERM_REAL_DATA_OR_SKIP(path, "outliers/ringCity_randomgrouped_100.g2o.gz");
+  ISOTHERM_REAL_DATA_OR_SKIP(labels, "outliers/ringCity_randomgrouped_100.labels.csv");
+  const auto file = read_pose_graph(path.string());
+  const auto& graph = std::get<PoseGraph<Pose2>>(file.graph);
+  const auto result = consensus(graph, edge_roles(graph));
+  const auto metrics = evaluate_loops(result.verdicts, read_labels(labels.string()));
+  EXPECT_EQ(metrics.precision(), 1.0);
+  EXPECT_EQ(metrics.recall(), 1.0);
+}
+
+}  // namespace
+}  // namespace isotherm::slam

@@ -1,0 +1,176 @@
+#include "prune/consensus/estimate/estimate.hpp"
+
+#include <numeric>
+
+#include <gtest/gtest.h>
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include "isotherm/slam/optimize/optimize.hpp"
+#include "slam/loop_graph.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+using isotherm_test::random_loop_graph;
+
+// Covariance of T_a^-1 T_b from the dense normal equations of the whole graph,
+// with derivatives by finite differences: nothing is shared with the sparse code.
+template <class Pose>
+class DenseOracle {
+ public:
+  DenseOracle(const PoseGraph<Pose>& graph, const std::vector<Pose>& poses) : poses_(poses) {
+    const auto size = static_cast<Eigen::Index>(poses.size()) * Pose::kDof;
+    Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(size, size);
+    for (const auto& constraint : graph.constraints) {
+      const auto derivative = jacobian(
+          constraint.from, constraint.to,
+          [&](const Pose& from, const Pose& to) { return residual(constraint, from, to); });
+      hessian += derivative.transpose() * constraint.information * derivative;
+    }
+    hessian.topLeftCorner<Pose::kDof, Pose::kDof>().diagonal().array() += 1e10;  // the gauge
+    covariance_ = hessian.inverse();
+  }
+
+  typename Pose::Matrix relative(Index a, Index b) const {
+    const Pose predicted = poses_[a].inverse() * poses_[b];
+    const auto derivative = jacobian(a, b, [&](const Pose& from, const Pose& to) {
+      return (predicted.inverse() * (from.inverse() * to)).log();
+    });
+    return derivative * covariance_ * derivative.transpose();
+  }
+
+ private:
+  template <class Function>
+  Eigen::MatrixXd jacobian(Index a, Index b, Function function) const {
+    constexpr double kStep = 1e-6;
+    Eigen::MatrixXd result =
+        Eigen::MatrixXd::Zero(Pose::kDof, static_cast<Eigen::Index>(poses_.size()) * Pose::kDof);
+    for (int d = 0; d < Pose::kDof; ++d) {
+      const typename Pose::Tangent xi = kStep * Pose::Tangent::Unit(d);
+      const Pose forth = Pose::exp(xi);
+      const Pose back = Pose::exp(-xi);
+      result.col(a * Pose::kDof + d) =
+          (function(poses_[a] * forth, poses_[b]) - function(poses_[a] * back, poses_[b])) /
+          (2.0 * kStep);
+      result.col(b * Pose::kDof + d) =
+          (function(poses_[a], poses_[b] * forth) - function(poses_[a], poses_[b] * back)) /
+          (2.0 * kStep);
+    }
+    return result;
+  }
+
+  const std::vector<Pose>& poses_;
+  Eigen::MatrixXd covariance_;
+};
+
+template <class Pose>
+class EstimateOf : public testing::Test {};
+using Poses = testing::Types<Pose2, Pose3>;
+TYPED_TEST_SUITE(EstimateOf, Poses);
+
+TYPED_TEST(EstimateOf, ContractionKeepsTheOptimum) {
+  using Pose = TypeParam;
+  Random random(11);
+  const auto made = random_loop_graph<Pose>(random, 60, 8, 0.1, 1e6);
+  const auto reduced = reduce(made.graph, edge_roles(made.graph));
+  EXPECT_LE(reduced.node_count(), 16);
+  EXPECT_EQ(reduced.steps.size() + 1, reduced.vertex.size());
+
+  Estimate<Pose> estimate(reduced);
+  estimate.update(std::vector<bool>(reduced.loops.size(), true), {}, 10);
+  const auto whole = optimize(made.graph);
+  const auto& poses = estimate.poses();
+  for (std::size_t a = 1; a < poses.size(); ++a) {
+    const Pose expected = whole.poses[reduced.vertex[0]].inverse() * whole.poses[reduced.vertex[a]];
+    EXPECT_LT((expected.inverse() * (poses[0].inverse() * poses[a])).log().norm(), 1e-6);
+  }
+}
+
+TYPED_TEST(EstimateOf, CovariancesAreThoseOfTheWholeGraph) {
+  using Pose = TypeParam;
+  Random random(12);
+  auto made = random_loop_graph<Pose>(random, 40, 8, 0.0, 1e6);
+  const auto roles = edge_roles(made.graph);
+  const auto reduced = reduce(made.graph, roles);
+  std::vector<bool> accepted(reduced.loops.size(), true);
+  accepted[1] = accepted[4] = false;
+  Estimate<Pose> estimate(reduced);
+  estimate.update(accepted, {}, 3);
+
+  auto keep = std::vector<bool>(made.graph.constraints.size(), true);
+  keep[roles.candidates[1]] = keep[roles.candidates[4]] = false;
+  const DenseOracle<Pose> oracle(filter_constraints(made.graph, keep), made.truth);
+  std::vector<Index> all(reduced.loops.size());
+  std::iota(all.begin(), all.end(), 0);
+  const auto covariances = estimate.relative_covariances(all);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const auto& loop = reduced.loops[k];
+    const auto expected = oracle.relative(reduced.vertex[loop.a], reduced.vertex[loop.b]);
+    EXPECT_LT((covariances[k] - expected).norm(), 1e-4 * expected.norm());
+  }
+}
+
+TYPED_TEST(EstimateOf, LoopsMovePartsTogether) {
+  using Pose = TypeParam;
+  Random random(13);
+  auto made = random_loop_graph<Pose>(random, 30, 4, 0.0);
+  made.graph.constraints.erase(made.graph.constraints.begin() + 14);  // two chains
+  Constraint<Pose> bridge;
+  bridge.from = 3;
+  bridge.to = 27;
+  bridge.T_from_to = made.truth[3].inverse() * made.truth[27];
+  made.graph.constraints.push_back(bridge);
+  const auto reduced = reduce(made.graph, edge_roles(made.graph));
+  Estimate<Pose> estimate(reduced);
+  std::vector<bool> accepted(reduced.loops.size(), false);
+  estimate.update(accepted, {}, 3);
+  EXPECT_EQ(estimate.component_count(), 2);
+  EXPECT_FALSE(estimate.connected(reduced.loops.back()));
+
+  accepted.back() = true;
+  estimate.update(accepted, {}, 3);
+  EXPECT_EQ(estimate.component_count(), 1);
+  for (const auto& loop : reduced.loops) EXPECT_LT(estimate.residual(loop).norm(), 1e-9);
+}
+
+// Where the loops stay the same, only values are computed anew.
+TYPED_TEST(EstimateOf, CovariancesFollowTheScaleAndWhatIsTakenBack) {
+  using Pose = TypeParam;
+  Random random(15);
+  const auto made = random_loop_graph<Pose>(random, 40, 8, 0.1, 1e6);
+  const auto reduced = reduce(made.graph, edge_roles(made.graph));
+  const std::vector<Index> asked = {0, 3, 7};
+  Estimate<Pose> estimate(reduced);
+  const auto covariances = [&](const std::vector<bool>& accepted, const CovarianceScale& scale) {
+    estimate.update(accepted, scale, 20);
+    return estimate.relative_covariances(asked);
+  };
+  std::vector<bool> few(reduced.loops.size(), false);
+  few[2] = few[5] = true;
+  const auto before = covariances(few, {1.0, 1.0});
+  const auto layout = estimate.layout();
+  const auto doubled = covariances(few, {2.0, 2.0});
+  covariances(std::vector<bool>(reduced.loops.size(), true), {1.0, 1.0});
+  estimate.restore(layout);
+  const auto after = covariances(few, {1.0, 1.0});
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    EXPECT_LT((doubled[k] - 2.0 * before[k]).norm(), 1e-6 * before[k].norm());
+    EXPECT_LT((after[k] - before[k]).norm(), 1e-6 * before[k].norm());
+  }
+}
+
+TYPED_TEST(EstimateOf, TrustedEdgesBesideTheChainAreUsed) {
+  using Pose = TypeParam;
+  Random random(14);
+  const auto made = random_loop_graph<Pose>(random, 30, 5, 0.0);
+  auto roles = edge_roles(made.graph);
+  roles.odometry.push_back(roles.candidates.back());
+  roles.candidates.pop_back();
+  const auto reduced = reduce(made.graph, roles);
+  EXPECT_EQ(reduced.loops.size(), 4u);
+  EXPECT_EQ(reduced.steps.size(), reduced.vertex.size());
+}
+
+}  // namespace
+}  // namespace isotherm::slam::detail

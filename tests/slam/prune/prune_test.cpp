@@ -1,0 +1,99 @@
+#include "isotherm/slam/prune/prune.hpp"
+
+#include <gtest/gtest.h>
+
+#include "isotherm/base/error.hpp"
+#include "isotherm/base/statistics.hpp"
+#include "isotherm/slam/evaluate/evaluate_loops.hpp"
+#include "isotherm/slam/io/pose_graph_file.hpp"
+#include "isotherm/slam/prune/odometry_chi2.hpp"
+#include "isotherm/slam/simulate/corrupt.hpp"
+#include "isotherm/slam/simulate/simulate.hpp"
+#include "isotherm_test/data.hpp"
+
+namespace isotherm::slam {
+namespace {
+
+using spectral::Verdict;
+
+TEST(Prune, Chi2GateIsTheQuantile) {
+  const auto city = simulate_city({.poses = 500, .measurements = {.loops = 300}, .seed = 1});
+  const auto roles = edge_roles(city.graph);
+  const auto result = prune(city.graph, roles, {.method = PruneMethod::chi2, .significance = 0.05});
+  const auto checks = odometry_chi2(city.graph, roles);
+  for (std::size_t c = 0; c < checks.size(); ++c) {
+    EXPECT_EQ(result.verdicts[c].score, checks[c].chi2);
+    EXPECT_EQ(result.verdicts[c].threshold, chi_squared_quantile(0.95, 3));
+    EXPECT_EQ(result.verdicts[c].edge, roles.candidates[c]);
+  }
+  EXPECT_TRUE(result.warnings.empty());
+}
+
+TEST(Prune, LoopsBetweenPartsAreKeptWithAWarning) {
+  PoseGraph<Pose2> graph;
+  graph.ids = {0, 1, 2, 3};
+  graph.constraints = {{0, 1, Pose2(1, 0, 0)}, {2, 3, Pose2(1, 0, 0)}, {0, 3, Pose2(9, 9, 1)}};
+  const auto result = prune(graph, edge_roles(graph), {.method = PruneMethod::chi2});
+  ASSERT_EQ(result.verdicts.size(), 1u);
+  EXPECT_EQ(result.verdicts[0].verdict, Verdict::keep);
+  EXPECT_EQ(result.verdicts[0].stage, "no-odometry-path");
+  EXPECT_EQ(result.warnings.size(), 1u);
+}
+
+TEST(Prune, Chi2SeparatesTheRealLoopsOfBicocca) {
+  ISOTHERM_REAL_DATA_OR_SKIP(folder, "paper/b25b");
+  const auto file = read_pose_graph((folder / "B25b_0.000.g2o").string());
+  const auto& graph = std::get<PoseGraph<Pose2>>(file.graph);
+  const auto result = prune(graph, edge_roles(graph), {.method = PruneMethod::chi2});
+  EXPECT_EQ(result.verdicts.size(), 446u);
+  EXPECT_EQ(count(result.verdicts, Verdict::prune), 211);
+}
+
+TEST(ApplyVerdicts, LeavesOutPrunedAndByDefaultAmbiguous) {
+  PoseGraph<Pose2> graph;
+  graph.ids = {0, 1, 2};
+  graph.constraints = {{0, 1}, {1, 2}, {0, 2}, {2, 0}, {0, 2}};
+  spectral::EdgeVerdicts verdicts(3);
+  verdicts[0].edge = 2;
+  verdicts[0].verdict = Verdict::prune;
+  verdicts[1].edge = 3;
+  verdicts[1].verdict = Verdict::ambiguous;
+  verdicts[2].edge = 4;
+  EXPECT_EQ(apply_verdicts(graph, verdicts).constraint_count(), 3);
+  EXPECT_EQ(apply_verdicts(graph, verdicts, true).constraint_count(), 4);
+  verdicts[0].edge = 5;
+  EXPECT_THROW(apply_verdicts(graph, verdicts), InvalidArgument);
+}
+
+TEST(PruneOptions, RejectsSignificanceOutOfRange) {
+  for (const double significance : {1.0, 1.5, -0.1}) {
+    EXPECT_THROW(PruneOptions{.significance = significance}.validate(), InvalidArgument);
+  }
+}
+
+// Every real graph of the list loads and prunes.
+class RealGraphs : public testing::TestWithParam<const char*> {};
+
+TEST_P(RealGraphs, LoadAndPrune) {
+  ISOTHERM_REAL_DATA_OR_SKIP(path, GetParam());
+  const auto file = read_pose_graph(path.string());
+  std::visit(
+      [](const auto& graph) {
+        const auto roles = edge_roles(graph);
+        for (const auto method : {PruneMethod::heat, PruneMethod::chi2}) {
+          const auto result = prune(graph, roles, {.method = method, .heat = {.tolerance = 1e-4}});
+          EXPECT_EQ(result.verdicts.size(), roles.candidates.size());
+        }
+      },
+      file.graph);
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, RealGraphs,
+                         testing::Values("posegraph2d/intel/intel.g2o",
+                                         "posegraph2d/CSAIL/CSAIL.g2o", "paper/kitti/kitti_00.g2o",
+                                         "paper/kitti/kitti_06.g2o", "paper/b25b/B25b_0.300.g2o",
+                                         "posegraph3d/sphere2500/sphere2500.g2o",
+                                         "posegraph3d/parking-garage/parking-garage.g2o"));
+
+}  // namespace
+}  // namespace isotherm::slam

@@ -1,0 +1,121 @@
+#include "sparse/inverse/half_solve.hpp"
+
+#include <gtest/gtest.h>
+#include <Eigen/Dense>
+
+#include "isotherm/base/random.hpp"
+#include "sparse/inverse/pair_plan.hpp"
+
+namespace isotherm::spectral {
+namespace {
+
+using Pairs = std::vector<std::pair<Index, Index>>;
+
+constexpr int kDof = 3;
+
+// A grid, whose elimination tree branches, in place of a larger map.
+Pairs grid(Index side) {
+  Pairs pairs;
+  for (Index row = 0; row < side; ++row) {
+    for (Index column = 0; column < side; ++column) {
+      const Index at = row * side + column;
+      if (column + 1 < side) pairs.emplace_back(at, at + 1);
+      if (row + 1 < side) pairs.emplace_back(at, at + side);
+    }
+  }
+  return pairs;
+}
+
+BlockCholesky factor_of(const Pairs& pairs, Index count, Eigen::MatrixXd& dense) {
+  Random random(6);
+  BlockCholesky blocks(kDof, count, pairs, FactorForm::supernodal);
+  dense = 10.0 * Eigen::MatrixXd::Identity(count * kDof, count * kDof);
+  for (Index k = 0; k < count; ++k) {
+    blocks.add_diagonal(k, (10.0 * Eigen::Matrix3d::Identity()).eval());
+  }
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    Eigen::Matrix3d block;
+    for (int e = 0; e < block.size(); ++e) block(e) = 0.5 * random.normal();
+    const auto [a, b] = pairs[k];
+    blocks.add_pair(k, block);
+    dense.block<kDof, kDof>(a * kDof, b * kDof) += block;
+    dense.block<kDof, kDof>(b * kDof, a * kDof) += block.transpose();
+  }
+  EXPECT_TRUE(blocks.factorise());
+  return blocks;
+}
+
+// Z_ab = sum of (L^-1)_ka' (L^-1)_kb over all k, slab by slab.
+void expect_inverse(Index side, Eigen::Index most_entries) {
+  const Index count = side * side;
+  Eigen::MatrixXd dense;
+  const BlockCholesky blocks = factor_of(grid(side), count, dense);
+  const FrontTree tree(blocks);
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(dense.rows(), dense.cols());
+  for (Index front = 0; front < tree.front_count(); ++front) {
+    std::vector<Index> below;
+    for (Index block = 0; block < count; ++block) {
+      if (tree.meeting(tree.front_of(block), front) == front) below.push_back(block);
+    }
+    HalfSolve<kDof> x(tree, front, below, most_entries);
+    while (x.next()) {
+      for (const Index a : below) {
+        for (const Index b : below) {
+          inverse.block<kDof, kDof>(a * kDof, b * kDof) += x.of(a).transpose() * x.of(b);
+        }
+      }
+    }
+  }
+  EXPECT_LT((inverse - dense.inverse()).norm(), 1e-12);
+}
+
+TEST(HalfSolve, RowsMultiplyToTheInverse) {
+  expect_inverse(1, 1 << 20);
+  expect_inverse(4, 1 << 20);
+  expect_inverse(9, 1 << 20);
+}
+
+TEST(HalfSolve, RowsMayComeInSlabs) { expect_inverse(9, 0); }
+
+TEST(PairPlan, HalfSolvesWhereManyPairsMeet) {
+  const Index side = 12;
+  const Index count = side * side;
+  Eigen::MatrixXd dense;
+  const BlockCholesky blocks = factor_of(grid(side), count, dense);
+  const FrontTree tree(blocks);
+  const Index root = tree.front_count() - 1;
+  Pairs across;
+  for (Index a = 0; a < count; ++a) {
+    for (Index b = 0; b < count; ++b) {
+      if (tree.meeting(tree.front_of(a), tree.front_of(b)) == root) across.emplace_back(a, b);
+    }
+  }
+  const PairPlan many(tree, across);
+  EXPECT_TRUE(many.half_solved(root));
+  EXPECT_EQ(many.meeting_at(root).size(), across.size());
+
+  const PairPlan one(tree, std::span(across).first(1));
+  EXPECT_FALSE(one.half_solved(root));
+  ASSERT_EQ(one.roots().size(), 1u);
+  EXPECT_EQ(one.roots().front(), root);
+  EXPECT_LE(one.children(root).size(), 2u);
+}
+
+TEST(PairPlan, HalfSolvesAParentWithItsChild) {
+  const Index count = 144;
+  Eigen::MatrixXd dense;
+  const BlockCholesky blocks = factor_of(grid(12), count, dense);
+  const FrontTree tree(blocks);
+  Pairs all;
+  for (Index a = 0; a < count; ++a) {
+    for (Index b = 0; b < count; ++b) all.emplace_back(a, b);
+  }
+  const PairPlan plan(tree, all);
+  for (Index f = 0; f < tree.front_count(); ++f) {
+    if (!plan.half_solved(f) || tree.parent(f) == FrontTree::kNone) continue;
+    EXPECT_TRUE(plan.half_solved(tree.parent(f)));
+  }
+}
+
+}  // namespace
+}  // namespace isotherm::spectral
