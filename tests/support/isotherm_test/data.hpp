@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -9,16 +8,10 @@
 namespace isotherm_test {
 
 /// A file that ships with the tests, by its path below tests/data.
-inline std::filesystem::path shipped_data(const std::string& name) {
-  return std::filesystem::path(ISOTHERM_TEST_DATA) / name;
-}
+std::filesystem::path shipped_data(const std::string& name);
 
 /// The folder of real data sets: $ISOTHERM_DATA, or its default place.
-inline std::filesystem::path real_data_root() {
-  const char* named = std::getenv("ISOTHERM_DATA");
-  return named != nullptr ? std::filesystem::path(named)
-                          : std::filesystem::path(ISOTHERM_DEFAULT_DATA);
-}
+std::filesystem::path real_data_root();
 
 }  // namespace isotherm_test
 
