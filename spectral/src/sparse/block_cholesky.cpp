@@ -1,6 +1,7 @@
 #include "isotherm/spectral/sparse/block_cholesky.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <cholmod.h>
@@ -105,6 +106,28 @@ struct BlockCholesky::Factor {
     cholmod_sparse pattern = sparse_view(starts, rows, nullptr);
     factor = cholmod_analyze_p(&pattern, order.data(), nullptr, 0, &common);
     if (factor == nullptr) throw NumericalError("cholesky", "symbolic analysis failed");
+  }
+
+  // Of L, in order of elimination.
+  std::vector<double> pivots() const {
+    std::vector<double> result;
+    if (factor == nullptr) return result;
+    const auto* values = static_cast<const double*>(factor->x);
+    if (!factor->is_super) {
+      const auto* starts = static_cast<const int*>(factor->p);
+      for (std::size_t k = 0; k < factor->n; ++k) result.push_back(values[starts[k]]);
+      return result;
+    }
+    const auto* first_column = static_cast<const int*>(factor->super);
+    const auto* row_start = static_cast<const int*>(factor->pi);
+    const auto* value_start = static_cast<const int*>(factor->px);
+    for (std::size_t s = 0; s < factor->nsuper; ++s) {
+      const std::ptrdiff_t rows = row_start[s + 1] - row_start[s];
+      for (std::ptrdiff_t k = 0; k < first_column[s + 1] - first_column[s]; ++k) {
+        result.push_back(values[value_start[s] + k * (rows + 1)]);
+      }
+    }
+    return result;
   }
 
   cholmod_common common{};
@@ -234,6 +257,13 @@ Eigen::MatrixXd BlockCholesky::solve(const Eigen::MatrixXd& rhs) const {
                                            rhs.cols());
   cholmod_free_dense(&solution, &factor_->common);
   return copy;
+}
+
+double BlockCholesky::log_determinant() const {
+  if (!factor_->usable) throw NumericalError("cholesky", "a determinant without a factor");
+  double sum = 0.0;
+  for (const double pivot : factor_->pivots()) sum += std::log(pivot);
+  return 2.0 * sum;
 }
 
 BlockCholesky::Supernodes BlockCholesky::supernodes() const {

@@ -23,8 +23,10 @@ struct Twin {
   Eigen::MatrixXd dense;
 };
 
-Twin random_twin(Random& random, int size, Index count, const Pairs& pairs) {
-  Twin twin{BlockCholesky(size, count, pairs), Eigen::MatrixXd::Zero(count * size, count * size)};
+Twin random_twin(Random& random, int size, Index count, const Pairs& pairs,
+                 FactorForm form = FactorForm::fastest) {
+  Twin twin{BlockCholesky(size, count, pairs, form),
+            Eigen::MatrixXd::Zero(count * size, count * size)};
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const auto [row, column] = pairs[k];
     const Eigen::MatrixXd block = random_matrix(random, size, size);
@@ -94,9 +96,32 @@ TEST(BlockCholesky, LargeEnoughForSupernodes) {
   EXPECT_LT((blocks.solve(rhs) - damped.ldlt().solve(rhs)).norm(), 1e-12);
 }
 
+TEST(BlockCholesky, LogDeterminantIsThatOfADenseFactor) {
+  Random random(8);
+  const Pairs pairs = {{0, 1}, {2, 1}, {3, 0}, {4, 0}, {3, 5}, {5, 1}};
+  for (const FactorForm form : {FactorForm::fastest, FactorForm::supernodal}) {
+    auto [blocks, dense] = random_twin(random, 3, 6, pairs, form);
+    EXPECT_THROW(blocks.log_determinant(), NumericalError);
+    const auto expected = [](const Eigen::MatrixXd& matrix) {
+      return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix)
+          .eigenvalues()
+          .array()
+          .log()
+          .sum();
+    };
+    ASSERT_TRUE(blocks.factorise());
+    EXPECT_NEAR(blocks.log_determinant(), expected(dense), 1e-11);
+    const Eigen::VectorXd damping = Eigen::VectorXd::LinSpaced(18, 1.0, 18.0);
+    ASSERT_TRUE(blocks.factorise(damping));
+    EXPECT_NEAR(blocks.log_determinant(), expected(dense + Eigen::MatrixXd(damping.asDiagonal())),
+                1e-11);
+  }
+}
+
 TEST(BlockCholesky, Empty) {
   BlockCholesky blocks(3, 0, {});
   EXPECT_TRUE(blocks.factorise());
+  EXPECT_EQ(blocks.log_determinant(), 0.0);
   EXPECT_EQ(blocks.solve(Eigen::VectorXd()).size(), 0);
 }
 

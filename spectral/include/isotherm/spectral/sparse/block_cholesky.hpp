@@ -72,6 +72,10 @@ class BlockCholesky {
   /// @throws NumericalError without a successful factorise() before.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& rhs) const;
 
+  /// log |A + diag(damping)|, natural, of the matrix that was factorised last.
+  /// @throws NumericalError without a successful factorise() before.
+  double log_determinant() const;
+
   /// A = L L' by supernodes: runs of columns of L with the same rows below them. All
   /// indices count scalars, in order of elimination, and no supernode parts a block.
   struct Supernodes {
