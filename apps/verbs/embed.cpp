@@ -112,7 +112,7 @@ struct EmbedVerb : OptionVerb<EmbedOptions> {
     eigen_options.progress = progress_line(flags);
     const auto eigen = smallest_eigenpairs(laplacian, eigen_options);
     const auto rows = coordinates(eigen, options);
-    if (rows.cols() < options.dimensions) {
+    if (eigen.count() == eigen_options.count && rows.cols() < options.dimensions) {
       warn(flags, fmt::format("the graph has only {} coordinates", rows.cols()));
     }
     report(eigen);
@@ -124,7 +124,8 @@ struct EmbedVerb : OptionVerb<EmbedOptions> {
   }
 
   Json to_json(const EigenDecomposition& eigen) const {
-    const std::vector<double> values(eigen.values.data(), eigen.values.data() + eigen.count());
+    const std::vector<double> values(eigen.values.begin(), eigen.values.end());
+    const std::vector<double> bounds(eigen.bounds.begin(), eigen.bounds.end());
     return {{"schema", "isotherm.embed/1"},
             {"method", enum_name(options.method)},
             {"vertices", eigen.size()},
@@ -132,6 +133,7 @@ struct EmbedVerb : OptionVerb<EmbedOptions> {
             {"solver", enum_name(eigen.method)},
             {"converged", eigen.status == EigenStatus::converged},
             {"eigenvalues", values},
+            {"bounds", bounds},
             {"largest_residual", eigen.count() > 0 ? eigen.residuals.maxCoeff() : 0.0},
             {"orthogonality", eigen.orthogonality},
             {"seconds", eigen.seconds},

@@ -9,7 +9,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "eigen/pseudo_inverse_lanczos.hpp"
+#include "eigen/pseudo_inverse_pairs.hpp"
 #include "isotherm/base/error.hpp"
 #include "sparse/cholmod_factor.hpp"
 
@@ -23,9 +23,9 @@ struct Pairs {
   Eigen::MatrixXd vectors;
 };
 
-/// All pairs that are not null. The null space is moved above the spectrum, so
-/// that it cannot mix with small eigenvalues.
-Pairs dense_pairs(const Laplacian& laplacian, Index count) {
+/// Vectors of all pairs that are not null, in ascending order. The null space is moved
+/// above the spectrum, so that it cannot mix with small eigenvalues.
+Eigen::MatrixXd dense_vectors(const Laplacian& laplacian, Index count) {
   const SparseMatrix basis = laplacian.null_space();
   Eigen::MatrixXd matrix(laplacian.matrix());
   const double shift = laplacian.norm_bound() > 0.0 ? 2.0 * laplacian.norm_bound() : 1.0;
@@ -34,31 +34,44 @@ Pairs dense_pairs(const Laplacian& laplacian, Index count) {
   if (solver.info() != Eigen::Success) {
     throw NumericalError("eigenpairs", "the dense solver did not converge");
   }
-  return {solver.eigenvalues().head(count), solver.eigenvectors().leftCols(count)};
+  return solver.eigenvectors().leftCols(count);
 }
 
-/// The `count` smallest of both, in ascending order.
-Pairs merge(const Pairs& first, const Pairs& second, Index count) {
-  const Index total = static_cast<Index>(first.values.size() + second.values.size());
-  Eigen::VectorXd values(total);
-  Eigen::MatrixXd vectors(first.vectors.rows(), total);
-  values << first.values, second.values;
-  vectors << first.vectors, second.vectors;
-  std::vector<Index> order(total);
+/// The Rayleigh quotients of unit vectors, which are accurate to the square of the vectors'
+/// error, as sums over edges: no term is negative, so that small ones do not drown in
+/// large degrees.
+Eigen::VectorXd energies(const Laplacian& laplacian, const Eigen::MatrixXd& vectors) {
+  const auto& matrix = laplacian.matrix();
+  Eigen::VectorXd null = Eigen::VectorXd::Ones(laplacian.size());
+  if (laplacian.kind() == LaplacianKind::normalised) null = laplacian.degrees().cwiseSqrt();
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(vectors.cols());
+  for (Eigen::Index k = 0; k < sums.size(); ++k) {
+    const auto x = vectors.col(k);
+    for (Eigen::Index column = 0; column < matrix.outerSize(); ++column) {
+      for (SparseMatrix::InnerIterator entry(matrix, column); entry; ++entry) {
+        const Eigen::Index row = entry.row();
+        if (row >= column) break;
+        const double step = x[row] / null[row] - x[column] / null[column];
+        sums[k] -= entry.value() * null[row] * null[column] * step * step;
+      }
+    }
+  }
+  return sums;
+}
+
+/// With more vectors, the `count` pairs of smallest values of all, in ascending order.
+Pairs merge(const Laplacian& laplacian, const Pairs& pairs, const Eigen::MatrixXd& more,
+            Index count) {
+  Eigen::VectorXd values(pairs.values.size() + more.cols());
+  Eigen::MatrixXd vectors(more.rows(), values.size());
+  values << pairs.values, energies(laplacian, more);
+  vectors << pairs.vectors, more;
+  std::vector<Eigen::Index> order(values.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
-                   [&](Index a, Index b) { return values[a] < values[b]; });
-  order.resize(std::min(total, count));
+                   [&](Eigen::Index a, Eigen::Index b) { return values[a] < values[b]; });
+  order.resize(std::min<std::size_t>(order.size(), count));
   return {values(order), vectors(Eigen::all, order)};
-}
-
-/// Replaces eigenvalues by Rayleigh quotients, which are accurate to the square
-/// of the vectors' error.
-void refine(const Laplacian& laplacian, Pairs& pairs) {
-  for (Index k = 0; k < pairs.values.size(); ++k) {
-    const auto vector = pairs.vectors.col(k);
-    pairs.values[k] = std::max(0.0, vector.dot(laplacian.matrix() * vector));
-  }
 }
 
 /// How many eigenvalues lie below `bound`.
@@ -68,14 +81,18 @@ std::int64_t count_below(const Laplacian& laplacian, double bound) {
   return detail::CholmodFactor(shifted, detail::FactorKind::symmetric).negative_pivots();
 }
 
+/// How far eigenvalues may be off through rounding of the matrix itself.
+double rounding(const Laplacian& laplacian) {
+  return 32.0 * std::numeric_limits<double>::epsilon() * laplacian.norm_bound();
+}
+
 /// A point just below the largest eigenvalue found, clear of its rounding, so
 /// that a cluster cut by `count` is not taken for missing pairs.
 double inertia_bound(const Laplacian& laplacian, const Pairs& pairs) {
-  constexpr double kUnit = std::numeric_limits<double>::epsilon();
   const auto last = pairs.vectors.rightCols<1>();
   const double value = pairs.values[pairs.values.size() - 1];
   const double residual = (laplacian.matrix() * last - value * last).norm();
-  return value - std::max({2.0 * residual, 1e-7 * value, 32.0 * kUnit * laplacian.norm_bound()});
+  return value - std::max({2.0 * residual, 1e-7 * value, rounding(laplacian)});
 }
 
 std::int64_t found_below(const Pairs& pairs, double bound) {
@@ -92,25 +109,22 @@ struct Search {
 /// Iterates for the pairs that are not null, then counts, and looks again in
 /// the complement of what was found while the count says that some are missing.
 Search iterate(const Laplacian& laplacian, Index count, Index nulls, const EigenOptions& options) {
-  detail::PseudoInverseLanczos lanczos(laplacian, options);
+  detail::PseudoInversePairs inverse(laplacian, options);
   Search search;
-  auto first = lanczos.largest(count, Eigen::MatrixXd(laplacian.size(), 0));
-  search.pairs = {std::move(first.values), std::move(first.vectors)};
-  refine(laplacian, search.pairs);
-  search.pairs =
-      merge(search.pairs, {Eigen::VectorXd(0), Eigen::MatrixXd(laplacian.size(), 0)}, count);
-  for (int round = 0; options.check_inertia && search.pairs.values.size() > 0; ++round) {
+  search.pairs.vectors.resize(laplacian.size(), 0);
+  std::int64_t missing = count;
+  for (int round = 0; missing > 0 && round <= kMaxRounds; ++round) {
+    const Index wanted = static_cast<Index>(std::min<std::int64_t>(missing, count));
+    search.pairs =
+        merge(laplacian, search.pairs, inverse.vectors(wanted, search.pairs.vectors), count);
+    missing = count - search.pairs.values.size();
+    if (!options.check_inertia || search.pairs.values.size() == 0) continue;
     const double bound = inertia_bound(laplacian, search.pairs);
-    if (bound <= 0.0) break;
-    const std::int64_t counted = count_below(laplacian, bound);
-    const std::int64_t missing = counted - nulls - found_below(search.pairs, bound);
-    search.inertia_count = counted;
-    search.complete = missing <= 0;
-    if (search.complete || round == kMaxRounds) break;
-    auto more = lanczos.largest(static_cast<Index>(missing), search.pairs.vectors);
-    Pairs missed{std::move(more.values), std::move(more.vectors)};
-    refine(laplacian, missed);
-    search.pairs = merge(search.pairs, missed, count);
+    if (bound <= 0.0) continue;
+    search.inertia_count = count_below(laplacian, bound);
+    const std::int64_t missed = search.inertia_count - nulls - found_below(search.pairs, bound);
+    search.complete = missed <= 0;
+    missing = std::max(missing, missed);
   }
   return search;
 }
@@ -126,18 +140,32 @@ void fix_sign(Eigen::Ref<Eigen::VectorXd> vector) {
   }
 }
 
+/// The null vectors, and what was found beside them.
+void join(const Laplacian& laplacian, const Pairs& pairs, EigenDecomposition& result) {
+  const Index nulls = result.null_count;
+  const auto found = static_cast<Index>(pairs.values.size());
+  result.values = Eigen::VectorXd::Zero(nulls + found);
+  result.values.tail(found) = pairs.values;
+  result.vectors.resize(laplacian.size(), nulls + found);
+  result.vectors.leftCols(nulls) = laplacian.null_space().leftCols(nulls);
+  result.vectors.rightCols(found) = pairs.vectors;
+}
+
 void assess(const Laplacian& laplacian, double tolerance, EigenDecomposition& result) {
   result.residuals =
       (laplacian.matrix() * result.vectors - result.vectors * result.values.asDiagonal())
           .colwise()
           .norm();
+  result.bounds = result.residuals.array() + rounding(laplacian);
+  result.bounds.head(result.null_count).setZero();
   const Index count = result.count();
   if (count == 0) return;
   const Eigen::MatrixXd gram = result.vectors.transpose() * result.vectors;
   result.orthogonality = (gram - Eigen::MatrixXd::Identity(count, count)).cwiseAbs().maxCoeff();
-  if (result.residuals.maxCoeff() > tolerance * result.norm) {
-    result.status = EigenStatus::not_converged;
-  }
+  const bool close = result.residuals.maxCoeff() <= tolerance * result.norm;
+  const Index rest = count - result.null_count;
+  const bool positive = (result.values.tail(rest).array() > result.bounds.tail(rest).array()).all();
+  if (!close || !positive) result.status = EigenStatus::not_converged;
 }
 
 EigenMethod choose(const EigenOptions& options, Index size, Index count) {
@@ -167,22 +195,18 @@ EigenDecomposition smallest_eigenpairs(const Laplacian& laplacian, const EigenOp
   result.norm = laplacian.norm_bound();
   result.null_count = nulls;
   result.method = choose(options, size, count);
-  result.values = Eigen::VectorXd::Zero(count);
-  result.vectors.resize(size, count);
-  result.vectors.leftCols(nulls) = laplacian.null_space().leftCols(nulls);
-  if (count > nulls) {
-    Search search;
-    if (result.method == EigenMethod::dense) {
-      search.pairs = dense_pairs(laplacian, count - nulls);
-    } else {
-      search = iterate(laplacian, count - nulls, nulls, options);
-    }
-    result.values.tail(count - nulls) = search.pairs.values;
-    result.vectors.rightCols(count - nulls) = search.pairs.vectors;
-    result.inertia_count = search.inertia_count;
-    if (!search.complete) result.status = EigenStatus::missed_pairs;
+  Search search;
+  search.pairs.vectors.resize(size, 0);
+  if (count > nulls && result.method == EigenMethod::dense) {
+    search.pairs = merge(laplacian, search.pairs, dense_vectors(laplacian, count - nulls), count);
+  } else if (count > nulls) {
+    search = iterate(laplacian, count - nulls, nulls, options);
   }
-  for (Index k = 0; k < count; ++k) fix_sign(result.vectors.col(k));
+  join(laplacian, search.pairs, result);
+  result.inertia_count = search.inertia_count;
+  if (result.count() < count) result.status = EigenStatus::not_converged;
+  if (!search.complete) result.status = EigenStatus::missed_pairs;
+  for (Index k = 0; k < result.count(); ++k) fix_sign(result.vectors.col(k));
   assess(laplacian, options.tolerance, result);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -12,7 +12,9 @@ Eigen::MatrixXd laplacian_eigenmap(const EigenDecomposition& eigen) {
 
 Eigen::MatrixXd commute_time_embedding(const EigenDecomposition& eigen) {
   const Index count = eigen.count() - eigen.null_count;
-  const Eigen::VectorXd factor = eigen.values.tail(count).array().rsqrt();
+  const auto values = eigen.values.tail(count).array();
+  const Eigen::ArrayXd positive = (values > 0.0).select(values, eigen.bounds.tail(count).array());
+  const Eigen::VectorXd factor = positive.rsqrt();
   return eigen.vectors.rightCols(count) * factor.asDiagonal();
 }
 

@@ -4,8 +4,10 @@
 #include <numbers>
 
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 #include "isotherm/base/error.hpp"
+#include "isotherm/spectral/eigen/embedding.hpp"
 #include "spectral/graphs.hpp"
 
 namespace isotherm::spectral {
@@ -123,6 +125,67 @@ TEST(EigenDecomposition, LongPathKeepsItsSmallestEigenvalues) {
     const double exact = 4.0 * squared_sine(0.5 * std::numbers::pi * k / n);
     EXPECT_NEAR(eigen.values[k] / exact, 1.0, 1e-4);
   }
+}
+
+using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+
+/// Eigenvalues of the combinatorial Laplacian with eleven more bits, ascending.
+LongMatrix eigenvalues_in_long_double(const WeightedGraph& graph) {
+  LongMatrix matrix = LongMatrix::Zero(graph.vertex_count(), graph.vertex_count());
+  for (const auto& [from, to, weight] : graph.edges()) {
+    matrix(from, from) += weight;
+    matrix(to, to) += weight;
+    matrix(from, to) -= weight;
+    matrix(to, from) -= weight;
+  }
+  return Eigen::SelfAdjointEigenSolver<LongMatrix>(matrix).eigenvalues();
+}
+
+TEST(EigenDecomposition, SixteenDecadesOfWeightsAreRightToTheirBoundsOrFlagged) {
+  Random random(23);
+  int converged = 0, runs = 0;
+  for (int k = 0; k < 40; ++k) {
+    const auto graph = k % 2 == 0 ? grid_graph(8, 8) : loopy_path(70, 14, random);
+    const auto spread = spread_weights(graph, 16.0, random);
+    const auto exact = eigenvalues_in_long_double(spread);
+    for (const auto method : kMethods) {
+      const auto eigen = smallest_eigenpairs(Laplacian(spread), {.count = 8, .method = method});
+      ASSERT_EQ(eigen.count(), 8);
+      for (Index pair = 1; pair < 8; ++pair) {
+        const double value = eigen.values[pair];
+        EXPECT_GE(value, 0.0);
+        EXPECT_LE(std::abs(value - static_cast<double>(exact(pair))), eigen.bounds[pair]);
+        if (eigen.status == EigenStatus::converged) {
+          EXPECT_GT(value, eigen.bounds[pair]);
+        }
+      }
+      EXPECT_TRUE(commute_time_embedding(eigen).allFinite());
+      converged += eigen.status == EigenStatus::converged ? 1 : 0;
+      ++runs;
+    }
+  }
+  EXPECT_GT(converged, 0);
+  EXPECT_LT(converged, runs);
+}
+
+TEST(EigenDecomposition, BipartiteGraphsAndCubesMissNoCopies) {
+  std::vector<WeightedEdge> edges;
+  for (Index v = 0; v < 256; ++v) {
+    for (Index bit = 1; bit < 256; bit *= 2) {
+      if ((v & bit) == 0) edges.push_back({v, v | bit, 1.0});
+    }
+  }
+  // Of the cube of d dimensions 2 k is d-choose-k-fold.
+  const auto cube = solve(WeightedGraph(256, edges), 40, EigenMethod::shift_invert);
+  for (Index k = 0; k < 40; ++k) {
+    EXPECT_NEAR(cube.values[k], k == 0 ? 0.0 : (k <= 8 ? 2.0 : (k <= 36 ? 4.0 : 6.0)), 1e-11);
+  }
+  edges.clear();
+  for (Index v = 0; v < 60; ++v) {
+    for (Index other = 60; other < 100; ++other) edges.push_back({v, other, 1.0});
+  }
+  const auto bipartite = solve(WeightedGraph(100, edges), 30, EigenMethod::shift_invert);
+  for (Index k = 1; k < 30; ++k) EXPECT_NEAR(bipartite.values[k], 40.0, 1e-10);
 }
 
 TEST(EigenDecomposition, SignsAreFixed) {

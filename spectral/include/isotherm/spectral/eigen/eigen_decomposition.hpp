@@ -15,7 +15,7 @@ namespace isotherm::spectral {
 enum class EigenMethod {
   automatic,     ///< dense up to `dense_limit` vertices
   dense,         ///< LAPACK-style tridiagonalisation; O(n^3), all pairs
-  shift_invert,  ///< Lanczos on the pseudo-inverse through one sparse factorisation
+  shift_invert,  ///< Spectra's Lanczos on the pseudo-inverse, one sparse factorisation
 };
 
 constexpr std::array<EnumName<EigenMethod>, 3> enum_names(EigenMethod) {
@@ -26,7 +26,7 @@ constexpr std::array<EnumName<EigenMethod>, 3> enum_names(EigenMethod) {
 
 struct EigenOptions {
   /// Number of smallest eigenpairs, null ones included; >= 1. Fewer come back
-  /// if the graph has fewer vertices.
+  /// if the graph has fewer vertices, or some have not converged.
   Index count = 10;
   /// More than a third of all pairs is always found by the dense solver.
   EigenMethod method = EigenMethod::automatic;
@@ -59,8 +59,10 @@ void visit_fields(Options& options, Visitor&& visitor) {
 
 enum class EigenStatus {
   converged,
-  not_converged,  ///< some residual exceeds the tolerance; see `residuals`
-  missed_pairs,   ///< the inertia count found more eigenvalues than the iteration
+  /// Pairs are missing, a residual exceeds the tolerance, or a value that is not null
+  /// exceeds its bound no more: weights over too many decades. See `residuals`, `bounds`.
+  not_converged,
+  missed_pairs,  ///< the inertia count found more eigenvalues than the iteration
 };
 
 /// The smallest eigenpairs of a Laplacian, in ascending order, with how good
@@ -70,6 +72,7 @@ struct EigenDecomposition {
   Eigen::VectorXd values;      ///< k
   Eigen::MatrixXd vectors;     ///< n x k, orthonormal columns
   Eigen::VectorXd residuals;   ///< |L u - lambda u| of each pair
+  Eigen::VectorXd bounds;      ///< how far each value may be from an eigenvalue of the graph
   double orthogonality = 0.0;  ///< largest entry of |U'U - I|
   double norm = 0.0;           ///< bound on |L| that tolerances refer to
   Index null_count = 0;        ///< leading pairs with eigenvalue 0: at most one a component

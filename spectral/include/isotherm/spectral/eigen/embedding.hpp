@@ -15,7 +15,7 @@ Eigen::MatrixXd laplacian_eigenmap(const EigenDecomposition& eigen);
 /// The commute-time embedding X = Lambda^(-1/2) U' over the pairs that are not
 /// null (paper eq. 3), transposed: n x (k - null_count). With all pairs, squared
 /// distances between rows of one component are effective resistances; times
-/// the graph's volume, commute times.
+/// the graph's volume, commute times. A value that rounding made 0 counts as its bound.
 Eigen::MatrixXd commute_time_embedding(const EigenDecomposition& eigen);
 
 /// The heat-kernel embedding X = exp(-t Lambda / 2) U' (paper eq. 8),
