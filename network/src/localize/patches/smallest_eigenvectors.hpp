@@ -8,7 +8,8 @@ namespace isotherm::network::detail {
 
 /// Orthonormal vectors, n x count, that span the eigenspace of the `count` smallest
 /// eigenvalues of a positive semi-definite matrix, by inverse iteration on a
-/// subspace with a few vectors to spare. One sparse factorisation.
+/// subspace with a few vectors to spare, since they may belong to one multiple eigenvalue
+/// (docs/results/libraries.md). One sparse factorisation.
 /// @throws NumericalError if it breaks down.
 Eigen::MatrixXd smallest_eigenvectors(const spectral::SparseMatrix& matrix, int count);
 
