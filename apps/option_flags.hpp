@@ -39,11 +39,12 @@ Json field_to_json(const T& value) {
   }
 }
 
-// The default as help shows it: lists without brackets.
+// The default as help shows it: lists without brackets, names without quotes.
 template <class T>
 std::string shown(const T& value) {
   const std::string json = field_to_json(value).dump();
-  return json.starts_with('[') ? json.substr(1, json.size() - 2) : json;
+  const bool enclosed = json.starts_with('[') || json.starts_with('"');
+  return enclosed ? json.substr(1, json.size() - 2) : json;
 }
 
 template <class T>
@@ -58,6 +59,46 @@ void field_from_json(std::string_view field, const Json& json, T& value) {
     throw InvalidArgument(std::string(field),
                           "has the wrong type in the configuration: " + json.dump());
   }
+}
+
+/// Adds the flag of a field to `app`; `remember` is called with each value given.
+template <class T, class Remember>
+CLI::Option* add_field_flag(CLI::App& app, std::string_view name, const T& value,
+                            std::string_view help, const Remember& remember) {
+  const std::string flag = flag_name(name);
+  CLI::Option* option = nullptr;
+  if constexpr (std::same_as<T, bool>) {
+    // "--x" and "--no-x", so that a configuration can be overridden either way.
+    const std::string both = flag + ",!--no-" + flag.substr(2);
+    option = app.add_flag_function(
+        both, [remember](std::int64_t times) { remember(times > 0); }, std::string(help));
+  } else if constexpr (Enumeration<T>) {
+    option = app.add_option_function<std::string>(
+        flag, [remember, flag](const std::string& text) { remember(enum_value<T>(flag, text)); },
+        std::string(help));
+    option->type_name(joined_enum_names<T>());
+    option->default_str(shown(value));
+  } else {
+    option = app.add_option_function<T>(flag, remember, std::string(help));
+    option->default_str(shown(value));
+    if constexpr (!std::is_arithmetic_v<T> && !std::same_as<T, std::string>) {
+      option->delimiter(',');
+    }
+  }
+  return option;
+}
+
+/// Gives the field `key` of `options` its value; false if there is no such field.
+/// @throws InvalidArgument for a value of the wrong type
+template <class Options>
+bool take_field(Options& options, std::string_view key, const Json& json) {
+  bool known = false;
+  visit_fields(options, [&](std::string_view name, auto& value, std::string_view) {
+    if (name != key) return;
+    field_from_json(name, json, value);
+    known = true;
+  });
+  return known;
 }
 
 }  // namespace detail
@@ -88,47 +129,20 @@ class FlaggedOptions {
   /// given.
   /// @throws InvalidArgument for an unknown key or a value of the wrong type.
   void resolve(const Json& config) {
-    for (const auto& [key, value] : config.items()) take(key, value);
+    for (const auto& [key, value] : config.items()) {
+      if (detail::take_field(options_, key, value)) continue;
+      throw InvalidArgument(key, "is not an option of this command");
+    }
     for (const auto& set : given_) set();
   }
 
  private:
   template <class T>
   void add(CLI::App& app, std::string_view name, T& value, std::string_view help) {
-    const std::string flag = detail::flag_name(name);
     const auto remember = [this, &value](const T& given) {
       given_.push_back([&value, given] { value = given; });
     };
-    CLI::Option* option = nullptr;
-    if constexpr (std::same_as<T, bool>) {
-      // "--x" and "--no-x", so that a configuration can be overridden either way.
-      const std::string both = flag + ",!--no-" + flag.substr(2);
-      option = app.add_flag_function(
-          both, [remember](std::int64_t times) { remember(times > 0); }, std::string(help));
-    } else if constexpr (detail::Enumeration<T>) {
-      option = app.add_option_function<std::string>(
-          flag, [remember, flag](const std::string& text) { remember(enum_value<T>(flag, text)); },
-          std::string(help));
-      option->type_name(joined_enum_names<T>());
-      option->default_str(std::string(enum_name(value)));
-    } else {
-      option = app.add_option_function<T>(flag, remember, std::string(help));
-      option->default_str(detail::shown(value));
-      if constexpr (!std::is_arithmetic_v<T> && !std::same_as<T, std::string>) {
-        option->delimiter(',');
-      }
-    }
-    option->group("Method");
-  }
-
-  void take(const std::string& key, const Json& json) {
-    bool known = false;
-    visit_fields(options_, [&](std::string_view name, auto& value, std::string_view) {
-      if (name != key) return;
-      detail::field_from_json(name, json, value);
-      known = true;
-    });
-    if (!known) throw InvalidArgument(key, "is not an option of this command");
+    detail::add_field_flag(app, name, value, help, remember)->group("Method");
   }
 
   Options& options_;

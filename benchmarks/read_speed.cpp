@@ -140,9 +140,8 @@ int main(int argc, char** argv) {
     path = (std::filesystem::temp_directory_path() / "isotherm_read_speed.g2o").string();
     write_g2o(path, walk(static_cast<Index>(std::atol(argument.c_str()))));
   }
-  const double ours = measure("isotherm", path, [&path] {
-    return std::get<PoseGraph<Pose3>>(read_pose_graph(path).graph);
-  });
+  const double ours =
+      measure("isotherm", path, [&path] { return as<Pose3>(read_pose_graph(path)); });
   const double plain = measure("iostream", path, [&path] { return read_plainly(path); });
   std::printf("ratio     %.1f\n", ours / plain);
   if (generate) std::filesystem::remove(path);

@@ -4,10 +4,7 @@
 #include <cstdio>
 #include <vector>
 
-#include <isotherm/spectral/eigen/eigen_decomposition.hpp>
-#include <isotherm/spectral/eigen/embedding.hpp>
-#include <isotherm/spectral/graph/laplacian.hpp>
-#include <isotherm/spectral/graph/weighted_graph.hpp>
+#include <isotherm/spectral.hpp>
 
 int main() {
   using namespace isotherm::spectral;

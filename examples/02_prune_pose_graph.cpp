@@ -1,11 +1,8 @@
-// Prunes false loop closures from a pose graph: simulate a city, corrupt it,
-// prune it, and compare the verdicts with the truth.
+// Prunes false loop closures from a pose graph: simulate a city, corrupt it, prune and
+// optimise it, and compare the verdicts and the map with the truth.
 #include <cstdio>
 
-#include <isotherm/slam/evaluate/evaluate_loops.hpp>
-#include <isotherm/slam/prune/prune.hpp>
-#include <isotherm/slam/simulate/corrupt.hpp>
-#include <isotherm/slam/simulate/simulate.hpp>
+#include <isotherm/slam.hpp>
 
 int main() {
   using namespace isotherm::slam;
@@ -13,17 +10,19 @@ int main() {
   const auto city = simulate_city({.poses = 1000, .measurements = {.loops = 400}, .seed = 7});
   const auto corrupted = corrupt(city.graph, city.truth, {.count = 200, .seed = 7});
 
-  const auto roles = edge_roles(corrupted.graph);
-  const auto result = prune(corrupted.graph, roles, {.method = PruneMethod::heat});
-  const auto pruned = apply_verdicts(corrupted.graph, result.verdicts);
+  const auto map = prune_and_optimize(corrupted.graph, {.prune = HeatPruneOptions{}});
 
-  for (const auto& round : result.rounds) {
+  for (const auto& round : map.decisions.rounds) {
     std::printf("t = %7g: %3lld of %3lld loops pruned (heat distance above %.4f)\n", round.scale,
                 static_cast<long long>(round.pruned), static_cast<long long>(round.candidates),
                 round.threshold);
   }
-  const auto metrics = evaluate_loops(result.verdicts, corrupted.labels);
-  std::printf("%d constraints left of %d; precision %.3f, recall %.3f\n", pruned.constraint_count(),
-              corrupted.graph.constraint_count(), metrics.precision(), metrics.recall());
+  const auto metrics = evaluate_loops(map.decisions.verdicts, corrupted.labels);
+  std::printf("%d constraints left of %d; precision %.3f, recall %.3f\n",
+              map.pruned.constraint_count(), corrupted.graph.constraint_count(),
+              metrics.precision(), metrics.recall());
+  const auto end = map.pruned.poses.back().translation();
+  std::printf("the map ends %.2f m from the truth\n",
+              (end - city.truth.back().translation()).norm());
   return metrics.precision() > 0.9 && metrics.recall() > 0.9 ? 0 : 1;
 }

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <vector>
 
-#include <isotherm/geometry/curves/lap_line.hpp>
+#include <isotherm/geometry.hpp>
 
 int main() {
   using namespace isotherm::geometry;

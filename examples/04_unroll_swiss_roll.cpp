@@ -16,8 +16,8 @@
 #include <vector>
 
 #include <isotherm/base/random.hpp>
-#include <isotherm/geometry/points/neighbour_graph.hpp>
-#include <isotherm/spectral/edges/judge_edges.hpp>
+#include <isotherm/geometry.hpp>
+#include <isotherm/spectral.hpp>
 
 namespace {
 

@@ -4,8 +4,7 @@
 #include <cstdio>
 #include <vector>
 
-#include <isotherm/network/localize/localize.hpp>
-#include <isotherm/network/simulate/simulate_network.hpp>
+#include <isotherm/network.hpp>
 
 int main() {
   using namespace isotherm::network;

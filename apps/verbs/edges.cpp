@@ -48,7 +48,7 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
     const auto file = read_input();
     for (const auto& diagnostic : file.report.diagnostics) warn(flags, to_string(diagnostic));
     auto result = judge_edges(file.graph, options, file.points);
-    const auto left = kept(file.graph, result.verdicts);
+    const auto left = apply_verdicts(file.graph, result.verdicts, keep_ambiguous);
     if (explain.wanted()) {
       const EdgesRun run{file_title(input), options, file.ids, file.points};
       write_report(explain, graph_report(file.graph, left, result, run));
@@ -102,15 +102,6 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
       verdict.from = ids[verdict.from];
       verdict.to = ids[verdict.to];
     }
-  }
-
-  WeightedGraph kept(const WeightedGraph& graph, const EdgeVerdicts& all) const {
-    std::vector<bool> keep;
-    for (const auto& verdict : all) {
-      keep.push_back(verdict.verdict == Verdict::keep ||
-                     (keep_ambiguous && verdict.verdict == Verdict::ambiguous));
-    }
-    return filter_edges(graph, keep);
   }
 
   Json to_json(const JudgeEdgesResult& result) const {

@@ -25,7 +25,6 @@ struct OptimizeVerb : OptionVerb<OptimizeOptions> {
 
   int run() {
     if (resolve_or_dump()) return kOk;
-    options.progress = progress_line(flags);
     auto file = read_input_graph(input, flags);
     return std::visit([&](auto& graph) { return run_on(graph, file); }, file.graph);
   }
@@ -33,7 +32,7 @@ struct OptimizeVerb : OptionVerb<OptimizeOptions> {
   template <class Pose>
   int run_on(PoseGraph<Pose>& graph, const PoseGraphFile& file) {
     const auto roles = trusted.empty() ? edge_roles(graph) : read_trusted_edges(trusted, graph);
-    const auto result = optimize(graph, roles, options);
+    const auto result = optimize(graph, roles, options, {flags.threads, progress_line(flags)});
     report(result);
     graph.poses = result.poses;
     if (output.ends_with(".tum")) {

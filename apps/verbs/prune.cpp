@@ -1,5 +1,3 @@
-#include "isotherm/slam/prune/prune.hpp"
-
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -11,11 +9,12 @@
 #include "isotherm/slam/evaluate/ground_truth.hpp"
 #include "isotherm/slam/graph/trusted_edges.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
+#include "isotherm/slam/pipeline.hpp"
 #include "isotherm/spectral/edges/verdict_file.hpp"
-#include "option_verb.hpp"
 #include "report/build/pose_graph_report.hpp"
 #include "report/report_flags.hpp"
 #include "verbs/pose_graph_input.hpp"
+#include "verbs/prune_flags.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {
@@ -34,12 +33,15 @@ Json to_json(const HeatRound& round) {
 }
 
 // Why each candidate was decided as it was; edges are numbered as in the verdicts.
-Json to_json(const ConsensusDetail& detail, const spectral::EdgeVerdict& verdict) {
-  return {{"edge", verdict.edge},
+Json to_json(const ConsensusDetail& detail, std::size_t candidate,
+             const spectral::EdgeVerdicts& verdicts) {
+  Json conflicts = Json::array();
+  for (const Index other : detail.conflicts) conflicts.push_back(verdicts[other].edge);
+  return {{"edge", verdicts[candidate].edge},
           {"chi2", finite_or_null(detail.chi2)},
           {"evidence", finite_or_null(detail.evidence)},
           {"round", detail.round},
-          {"conflicts", detail.conflicts}};
+          {"conflicts", std::move(conflicts)}};
 }
 
 Json to_json(const ConsensusResult& result, const spectral::EdgeVerdicts& verdicts) {
@@ -57,14 +59,14 @@ Json to_json(const ConsensusResult& result, const spectral::EdgeVerdicts& verdic
                               {"in_force", round.in_force}});
   }
   for (std::size_t k = 0; k < result.details.size(); ++k) {
-    json["loops"].push_back(to_json(result.details[k], verdicts[k]));
+    json["loops"].push_back(to_json(result.details[k], k, verdicts));
   }
   return json;
 }
 
 Json to_json(const PruneResult& result, const PruneOptions& options) {
   Json json = {{"schema", "isotherm.prune/1"},
-               {"method", enum_name(result.method)},
+               {"method", result.method},
                {"candidates", result.verdicts.size()},
                {"kept", count(result.verdicts, Verdict::keep)},
                {"pruned", count(result.verdicts, Verdict::prune)},
@@ -76,27 +78,30 @@ Json to_json(const PruneResult& result, const PruneOptions& options) {
     json["rounds"] = Json::array();
     for (const auto& round : result.rounds) json["rounds"].push_back(to_json(round));
   }
-  if (result.method == PruneMethod::consensus) {
+  if (result.method == ConsensusOptions::method()) {
     json["consensus"] = to_json(result.consensus, result.verdicts);
   }
   return json;
 }
 
-struct PruneVerb : OptionVerb<PruneOptions> {
+struct PruneVerb {
+  CommonFlags flags;
+  PruneFlags method;
+  PipelineOptions options;
   std::string input;
   std::string output;
   std::string verdicts;
-  std::string preset;
   std::string trusted;
-  bool keep_ambiguous = false;
   ReportFlags explain;
   GroundTruthSource truth;
 
   int run() {
-    if (preset == "datta2016") options.heat = datta2016();
-    if (resolve_or_dump()) return kOk;
-    options.threads = flags.threads;
-    options.progress = progress_line(flags);
+    options.prune = method.resolve(read_config(flags));
+    if (flags.dump_config) {
+      write_json("-", options_to_json(options.prune));
+      return kOk;
+    }
+    if (!explain.wanted()) options.optimize.reset();
     auto file = read_input_graph(input, flags);
     std::visit([&](auto& graph) { run_on(graph, file); }, file.graph);
     return kOk;
@@ -105,24 +110,26 @@ struct PruneVerb : OptionVerb<PruneOptions> {
   // `graph` is the one in `file`.
   template <class Pose>
   void run_on(PoseGraph<Pose>& graph, const PoseGraphFile& file) {
+    const RunContext context{flags.threads, progress_line(flags)};
     const auto roles = trusted.empty() ? edge_roles(graph) : read_trusted_edges(trusted, graph);
-    const auto result = prune(graph, roles, options);
-    report(result);
+    auto result = prune_and_optimize(graph, roles, options, context);
+    report(result.decisions);
     std::optional<Report> page;
-    if (explain.wanted()) page = explained(graph, roles, result);
-    graph = apply_verdicts(graph, result.verdicts, keep_ambiguous);
+    if (explain.wanted()) page = explained(graph, result, context);
+    // Poses stay as they came: they are for 'optimize' to find.
+    graph.constraints = std::move(result.pruned.constraints);
     if (!output.empty()) write_g2o(output, file);
-    if (!verdicts.empty()) spectral::write_verdicts(verdicts, result.verdicts);
-    write_json(flags.json, to_json(result, options));
+    if (!verdicts.empty()) spectral::write_verdicts(verdicts, result.decisions.verdicts);
+    write_json(flags.json, to_json(result.decisions, options.prune));
     if (page) write_report(explain, *page);
   }
 
   template <class Pose>
-  Report explained(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                   const PruneResult& result) const {
-    PruneRun<Pose> run{file_title(input), options, keep_ambiguous, {}};
+  Report explained(const PoseGraph<Pose>& graph, const PipelineResult<PoseGraph<Pose>>& result,
+                   const RunContext& context) const {
+    PruneRun<Pose> run{file_title(input), options, {}};
     if (!truth.path.empty()) run.truth = read_ground_truth(graph, truth);
-    return pose_graph_report(graph, roles, result, run);
+    return pose_graph_report(graph, result, run, context);
   }
 
   void report(const PruneResult& result) const {
@@ -136,9 +143,9 @@ struct PruneVerb : OptionVerb<PruneOptions> {
                                      round.scale, round.pruned, round.candidates, round.threshold));
     }
     say(flags,
-        fmt::format("{}: {} loops, {} kept, {} pruned, {} ambiguous, {:.2f} s",
-                    enum_name(result.method), result.verdicts.size(),
-                    count(result.verdicts, Verdict::keep), count(result.verdicts, Verdict::prune),
+        fmt::format("{}: {} loops, {} kept, {} pruned, {} ambiguous, {:.2f} s", result.method,
+                    result.verdicts.size(), count(result.verdicts, Verdict::keep),
+                    count(result.verdicts, Verdict::prune),
                     count(result.verdicts, Verdict::ambiguous), result.seconds));
   }
 };
@@ -153,13 +160,11 @@ Verb add_prune(CLI::App& root) {
       ->type_name("FILE");
   verb->add_option("--verdicts", prune->verdicts, "decision and reason a loop, as CSV")
       ->type_name("FILE");
-  verb->add_flag("--keep-ambiguous", prune->keep_ambiguous,
+  verb->add_flag("--keep-ambiguous", prune->options.keep_ambiguous,
                  "leave loops that are not proven either way in the graph");
   verb->add_option("--trusted", prune->trusted,
                    "CSV of edges to trust in place of odometry (edge, or from,to)")
       ->type_name("FILE");
-  verb->add_option("--preset", prune->preset, "datta2016: heat as the paper states it")
-      ->check(CLI::IsMember({"datta2016"}));
   prune->explain.add_to(*verb);
   verb->add_option("--ground-truth", prune->truth.path,
                    "true poses, for the trajectory error in the report")
@@ -167,7 +172,8 @@ Verb add_prune(CLI::App& root) {
   verb->add_option("--timestamps", prune->truth.timestamps,
                    "time of each pose in seconds, one a line, where the truth needs it")
       ->type_name("FILE");
-  prune->add_flags(*verb);
+  prune->method.add_to(*verb);
+  add_common_flags(*verb, prune->flags);
   return {verb, [prune] { return prune->run(); }};
 }
 

@@ -111,9 +111,11 @@ TEST_F(Contract, ReadsStandardInput) {
 }
 
 TEST_F(Contract, ConfigurationGivesWayToFlags) {
-  write_text(folder / "c.json", R"({"significance": 0.2, "konst": [2.5], "threshold": "gap"})");
-  const auto dumped = run_ok("prune x.g2o --config c.json --significance 0.3 --dump-config");
-  EXPECT_THAT(dumped, HasSubstr("\"significance\": 0.3"));
+  write_text(folder / "c.json",
+             R"({"method": "heat", "tolerance": 0.2, "konst": [2.5], "threshold": "gap"})");
+  const auto dumped = run_ok("prune x.g2o --config c.json --tolerance 0.3 --dump-config");
+  EXPECT_THAT(dumped, HasSubstr("\"method\": \"heat\""));
+  EXPECT_THAT(dumped, HasSubstr("\"tolerance\": 0.3"));
   EXPECT_THAT(dumped, HasSubstr("2.5"));
   EXPECT_THAT(dumped, HasSubstr("\"threshold\": \"gap\""));
   write_text(folder / "d.json", dumped);

@@ -11,6 +11,7 @@ namespace {
 using isotherm_test::CommandTest;
 using isotherm_test::read_text;
 using testing::HasSubstr;
+using testing::Not;
 
 class PruneCommand : public CommandTest {
  protected:
@@ -56,10 +57,62 @@ TEST_F(PruneCommand, LabelAgreesWithTheLabelsOfCorrupt) {
   EXPECT_THAT(run_ok("eval loops verdicts.csv by_truth.csv"), HasSubstr("AUC "));
 }
 
+TEST_F(PruneCommand, ReportLeavesTheOutputAsItIs) {
+  make_corrupted();
+  run_ok("prune bad.g2o -o plain.g2o --verdicts plain.csv");
+  run_ok("prune bad.g2o -o explained.g2o --verdicts explained.csv --report report.json");
+  EXPECT_EQ(read_text(folder / "plain.g2o"), read_text(folder / "explained.g2o"));
+  EXPECT_EQ(read_text(folder / "plain.csv"), read_text(folder / "explained.csv"));
+}
+
+TEST_F(PruneCommand, HelpShowsTheOptionsOfTheMethodThatIsNamed) {
+  const auto general = run_ok("prune --help");
+  EXPECT_THAT(general, HasSubstr("--keep-ambiguous"));
+  EXPECT_THAT(general, HasSubstr("--method NAME --help"));
+  EXPECT_THAT(general, Not(HasSubstr("--significance")));
+  for (const char* line : {"prune --method chi2 --help", "prune --help --method chi2"}) {
+    const auto help = run_ok(line);
+    EXPECT_THAT(help, HasSubstr("Method chi2"));
+    EXPECT_THAT(help, testing::ContainsRegex("--significance [^[]*\\[0.01\\]"));
+    EXPECT_THAT(help, Not(HasSubstr("--scales")));
+  }
+  EXPECT_THAT(run_ok("prune --preset datta2016 --help"), HasSubstr("[mean-sigma]"));
+}
+
+TEST_F(PruneCommand, RefusesOptionsOfAnotherMethod) {
+  run_ok("simulate city --poses 10 --loops 2 -o a.g2o");
+  const auto refused = run("prune a.g2o --tolerance 1e-3 -o b.g2o");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--tolerance: is an option of heat, not of method consensus"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "b.g2o"));
+  EXPECT_EQ(run("prune a.g2o --method gnc --no-curve-rarity").code, 2);
+  // A configuration may speak of several methods; what it says must have the right type.
+  isotherm_test::write_text(folder / "c.json", R"({"tolerance": 0.5, "kernel_width": 3})");
+  EXPECT_THAT(run_ok("prune a.g2o --config c.json --dump-config"), Not(HasSubstr("tolerance")));
+  EXPECT_THAT(run_ok("prune a.g2o --config c.json --method dcs --dump-config"),
+              HasSubstr("\"kernel_width\": 3.0"));
+  isotherm_test::write_text(folder / "c.json", R"({"tolerance": "small"})");
+  EXPECT_EQ(run("prune a.g2o --config c.json --dump-config").code, 2);
+}
+
+TEST_F(PruneCommand, PresetSelectsItsMethodOrIsRefused) {
+  const auto preset = run_ok("prune a.g2o --preset datta2016 --konst 2 --dump-config");
+  EXPECT_THAT(preset, HasSubstr("\"method\": \"heat\""));
+  EXPECT_THAT(preset, HasSubstr("\"threshold\": \"mean-sigma\""));
+  EXPECT_THAT(preset, HasSubstr("2.0"));
+  EXPECT_EQ(run_ok("prune a.g2o --method heat --preset datta2016 --konst 2 --dump-config"), preset);
+  const auto refused = run("prune a.g2o --preset datta2016 --method consensus --dump-config");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("datta2016 is of method heat, not of consensus"));
+  isotherm_test::write_text(folder / "c.json", R"({"method": "chi2"})");
+  EXPECT_EQ(run("prune a.g2o --preset datta2016 --config c.json --dump-config").code, 2);
+  EXPECT_EQ(run("prune a.g2o --preset nobody2000 --dump-config").code, 2);
+}
+
 TEST_F(PruneCommand, SameBytesForAnyNumberOfThreads) {
   make_corrupted();
-  run_ok("prune bad.g2o --threads 1 -o one.g2o --verdicts one.csv");
-  run_ok("prune bad.g2o --threads 2 -o two.g2o --verdicts two.csv");
+  run_ok("prune bad.g2o --method heat --threads 1 -o one.g2o --verdicts one.csv");
+  run_ok("prune bad.g2o --method heat --threads 2 -o two.g2o --verdicts two.csv");
   EXPECT_EQ(read_text(folder / "one.g2o"), read_text(folder / "two.g2o"));
   EXPECT_EQ(read_text(folder / "one.csv"), read_text(folder / "two.csv"));
 }

@@ -2,7 +2,7 @@
 
 #include <cmath>
 #include <limits>
-#include <unordered_map>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -24,25 +24,27 @@ using namespace slam;
 template <class Pose>
 class Explainer {
  public:
-  Explainer(const PoseGraph<Pose>& graph, const EdgeRoles& roles, const PruneResult& decisions,
-            const PruneRun<Pose>& run)
-      : graph_(graph), roles_(roles), decisions_(decisions), run_(run) {}
+  Explainer(const PoseGraph<Pose>& graph, const PipelineResult<PoseGraph<Pose>>& result,
+            const PruneRun<Pose>& run, const RunContext& context)
+      : graph_(graph),
+        roles_(result.roles),
+        decisions_(result.decisions),
+        map_(result.pruned.poses),
+        optimized_(*result.optimized),
+        run_(run),
+        context_(context) {}
 
   Report explain() && {
-    OptimizeOptions options;
-    options.progress = run_.options.progress;
-    const auto map =
-        optimize(apply_verdicts(graph_, decisions_.verdicts, run_.keep_ambiguous), options);
     start();
-    add_candidates(map.poses);
+    add_candidates();
     add_layout("before",
                graph_.poses.empty() ? "Before: the chain of odometry, with all loops"
                                     : "Before: poses as in the file, with all loops",
                trajectory_of(graph_).poses);
-    add_layout("after", "After: optimised without the pruned loops", map.poses);
-    add_path(map.poses);
+    add_layout("after", "After: optimised without the pruned loops", map_);
+    add_path();
     add_spectral();
-    add_words(map);
+    add_words();
     return std::move(report_);
   }
 
@@ -53,7 +55,7 @@ class Explainer {
     report_.dimension = Pose::kDim;
     report_.unit = "m";
     report_.nouns = {"pose", "poses", "loop", "loops", "odometry"};
-    report_.options = options_to_json(run_.options);
+    report_.options = options_to_json(run_.options.prune);
     report_.warnings = decisions_.warnings;
     report_.node_ids = graph_.ids;
     for (const Index k : roles_.odometry) {
@@ -63,18 +65,18 @@ class Explainer {
     report_.rounds = report_rounds(decisions_);
   }
 
-  void add_candidates(const std::vector<Pose>& map) {
+  void add_candidates() {
     auto& all = report_.candidates;
     all = report_candidates(decisions_.verdicts, [this](const spectral::EdgeVerdict& verdict) {
       const auto& constraint = graph_.constraints[verdict.edge];
       return CandidateSource{static_cast<std::int32_t>(constraint.from),
                              static_cast<std::int32_t>(constraint.to), constraint.line};
     });
-    add_chi2(map);
+    add_chi2();
     if (!decisions_.consensus.details.empty()) add_consensus();
   }
 
-  void add_chi2(const std::vector<Pose>& map) {
+  void add_chi2() {
     ReportColumn alone{"chi2_odometry",
                        "χ² odometry",
                        "",
@@ -93,7 +95,7 @@ class Explainer {
                        true};
     for (const Index k : roles_.candidates) {
       const auto& constraint = graph_.constraints[k];
-      const auto r = residual(constraint, map[constraint.from], map[constraint.to]);
+      const auto r = residual(constraint, map_[constraint.from], map_[constraint.to]);
       after.values.push_back(static_cast<float>(r.dot(constraint.information * r)));
     }
     report_.candidates.columns.push_back(std::move(alone));
@@ -105,14 +107,12 @@ class Explainer {
     ReportColumn evidence{"evidence", "evidence",
                           "",         "Log odds of a correct loop against a loop to anywhere.",
                           {},         false};
-    std::unordered_map<Index, std::uint32_t> position;
-    for (std::uint32_t c = 0; c < roles_.candidates.size(); ++c) {
-      position.emplace(roles_.candidates[c], c);
-    }
     all.conflict_offsets.push_back(0);
     for (const auto& detail : decisions_.consensus.details) {
       evidence.values.push_back(static_cast<float>(detail.evidence));
-      for (const Index loop : detail.conflicts) all.conflicts.push_back(position.at(loop));
+      for (const Index loop : detail.conflicts) {
+        all.conflicts.push_back(static_cast<std::uint32_t>(loop));
+      }
       all.conflict_offsets.push_back(static_cast<std::uint32_t>(all.conflicts.size()));
     }
     all.columns.push_back(std::move(evidence));
@@ -137,20 +137,20 @@ class Explainer {
     errors_.push_back(comparison->statistics);
   }
 
-  void add_path(const std::vector<Pose>& map) {
+  void add_path() {
     double travelled = 0.0;
-    for (std::size_t k = 0; k < map.size(); ++k) {
-      if (k > 0) travelled += (map[k].translation() - map[k - 1].translation()).norm();
+    for (std::size_t k = 0; k < map_.size(); ++k) {
+      if (k > 0) travelled += (map_[k].translation() - map_[k - 1].translation()).norm();
       report_.path.push_back(static_cast<float>(travelled));
     }
   }
 
   void add_spectral() {
-    const auto& heat = run_.options.heat;
-    const auto induced =
-        induce(graph_, roles_, heat.induction, run_.options.threads, run_.options.progress);
+    const auto* own = std::get_if<HeatPruneOptions>(&run_.options.prune);
+    const HeatPruneOptions heat = own != nullptr ? *own : HeatPruneOptions{};
+    const auto induced = induce(graph_, roles_, heat.induction, context_);
     const SpectralReportOptions options{
-        .scales = heat.scales, .threads = run_.options.threads, .progress = run_.options.progress};
+        .scales = heat.scales, .threads = context_.threads, .progress = context_.progress};
     std::vector<spectral::VertexPair> pairs;
     for (const Index k : roles_.candidates) {
       pairs.push_back({graph_.constraints[k].from, graph_.constraints[k].to});
@@ -159,23 +159,26 @@ class Explainer {
     report_.heat = report_heat(induced.graph, pairs, report_.candidates.verdict, options);
     const std::string weights =
         fmt::format(" Odometry weighs {}, loops by {}.", heat.induction.odometry_weight,
-                    enum_name(heat.induction.init));
+                    enum_name(heat.induction.weights));
     report_.heat.note += weights;
     report_.spectrum.note += weights;
     for (const auto& round : decisions_.rounds) report_.heat.thresholds.push_back(round.threshold);
   }
 
-  void add_words(const OptimizeResult<Pose>& map) {
+  void add_words() {
+    const auto& asked = run_.options.prune;
     report_.summary = {
         {"What came in", words_of_input()},
-        {"What was decided", words_of_decisions(decisions_, report_.nouns, run_.keep_ambiguous)},
-        {"The result", words_of_map(map)},
-        {"How sure", words_of_certainty(decisions_, run_.options)},
-        {"Options", options_in_words(report_.options, options_to_json(PruneOptions{}))}};
+        {"What was decided",
+         words_of_decisions(decisions_, report_.nouns, run_.options.keep_ambiguous)},
+        {"The result", words_of_map()},
+        {"How sure", words_of_certainty(decisions_, asked)},
+        {"Options",
+         options_in_words(report_.options, options_to_json(prune_method(method_name(asked))))}};
     report_.truth_note = words_of_truth();
-    if (map.status != OptimizeStatus::converged) {
-      report_.warnings.push_back(
-          fmt::format("the optimisation of the map ended with status {}", enum_name(map.status)));
+    if (optimized_.status != OptimizeStatus::converged) {
+      report_.warnings.push_back(fmt::format("the optimisation of the map ended with status {}",
+                                             enum_name(optimized_.status)));
     }
   }
 
@@ -185,7 +188,8 @@ class Explainer {
                        roles_.odometry.size(), roles_.candidates.size());
   }
 
-  std::string words_of_map(const OptimizeResult<Pose>& map) const {
+  std::string words_of_map() const {
+    const auto& map = optimized_;
     std::string text = fmt::format(
         "The map was optimised in {} iteration{}; its {} constraints have a chi-squared of "
         "{:.4g} in all.",
@@ -211,7 +215,10 @@ class Explainer {
   const PoseGraph<Pose>& graph_;
   const EdgeRoles& roles_;
   const PruneResult& decisions_;
+  const std::vector<Pose>& map_;
+  const OptimizeSummary& optimized_;
   const PruneRun<Pose>& run_;
+  const RunContext& context_;
   std::vector<ErrorStatistics> errors_;  // before and after, if there is truth
   Report report_;
 };
@@ -219,14 +226,16 @@ class Explainer {
 }  // namespace
 
 template <class Pose>
-Report pose_graph_report(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                         const PruneResult& decisions, const PruneRun<Pose>& run) {
-  return Explainer<Pose>(graph, roles, decisions, run).explain();
+Report pose_graph_report(const PoseGraph<Pose>& graph,
+                         const PipelineResult<PoseGraph<Pose>>& result, const PruneRun<Pose>& run,
+                         const RunContext& context) {
+  if (!result.optimized) throw InvalidArgument("optimize", "a report needs the optimised map");
+  return Explainer<Pose>(graph, result, run, context).explain();
 }
 
-template Report pose_graph_report(const PoseGraph<Pose2>&, const EdgeRoles&, const PruneResult&,
-                                  const PruneRun<Pose2>&);
-template Report pose_graph_report(const PoseGraph<Pose3>&, const EdgeRoles&, const PruneResult&,
-                                  const PruneRun<Pose3>&);
+template Report pose_graph_report(const PoseGraph<Pose2>&, const PipelineResult<PoseGraph<Pose2>>&,
+                                  const PruneRun<Pose2>&, const RunContext&);
+template Report pose_graph_report(const PoseGraph<Pose3>&, const PipelineResult<PoseGraph<Pose3>>&,
+                                  const PruneRun<Pose3>&, const RunContext&);
 
 }  // namespace isotherm::apps

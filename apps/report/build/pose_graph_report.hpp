@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "isotherm/slam/graph/pose_graph.hpp"
-#include "isotherm/slam/prune/prune.hpp"
+#include "isotherm/slam/pipeline.hpp"
 #include "report/report.hpp"
 
 namespace isotherm::apps {
@@ -14,17 +14,17 @@ namespace isotherm::apps {
 template <class Pose>
 struct PruneRun {
   std::string title;  ///< name of the input file
-  slam::PruneOptions options;
-  bool keep_ambiguous = false;
+  slam::PipelineOptions options;
   std::vector<std::optional<Pose>> truth;  ///< one a vertex, or empty
 };
 
-/// Explains a pruning: optimises what is left, and compares maps, chi-squared, heat
+/// Explains what prune_and_optimize() made of `graph`: compares maps, chi-squared, heat
 /// distances and, where it is known, the truth before and after. Time is that of
-/// optimize(), of odometry_chi2() and of a few factorisations of the graph's Laplacian.
-/// @throws NumericalError, Cancelled
+/// odometry_chi2() and of a few factorisations of the graph's Laplacian.
+/// @throws NumericalError, Cancelled, InvalidArgument if the pruned graph was not optimised
 template <class Pose>
-Report pose_graph_report(const slam::PoseGraph<Pose>& graph, const slam::EdgeRoles& roles,
-                         const slam::PruneResult& decisions, const PruneRun<Pose>& run);
+Report pose_graph_report(const slam::PoseGraph<Pose>& graph,
+                         const slam::PipelineResult<slam::PoseGraph<Pose>>& result,
+                         const PruneRun<Pose>& run, const RunContext& context);
 
 }  // namespace isotherm::apps

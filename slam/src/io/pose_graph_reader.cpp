@@ -61,15 +61,16 @@ Matrix arranged(const std::array<double, kCount>& entries,
 
 class Reader {
  public:
-  Reader(TextReader& text, const ReadOptions& options)
-      : text_(text), options_(options), fields_(text, options, file_.report) {
+  Reader(TextReader& text, FileFormat format, const ReadOptions& options)
+      : text_(text),
+        options_(options),
+        fields_(text, options, file_.report),
+        untagged_(format == FileFormat::edge_rows),
+        named_(format == FileFormat::pyfg) {
     file_.report.path = text.path();
   }
 
   PoseGraphFile run() {
-    const auto format = detect_format(text_);
-    named_ = format == FileFormat::pyfg;
-    untagged_ = format == FileFormat::edge_rows;
     while (text_.next_line()) read_line();
     finish();
     return std::move(file_);
@@ -264,8 +265,8 @@ class Reader {
   GraphDraft<Pose2> planar_;
   GraphDraft<Pose3> spatial_;
   std::vector<FixedVertex> fixed_;
-  bool untagged_ = false;  // every line is an EDGE_SE2 without its tag
-  bool named_ = false;     // PyFG: time stamps, names for ids, covariances
+  bool untagged_;  // every line is an EDGE_SE2 without its tag
+  bool named_;     // PyFG: time stamps, names for ids, covariances
   std::array<std::uint64_t, kTags.size()> counts_{};
 };
 
@@ -273,8 +274,9 @@ class Reader {
 
 PoseGraphFile read_pose_graph(TextReader& reader, const ReadOptions& options) {
   options.validate();
-  if (detect_format(reader) == FileFormat::places) return read_places(reader);
-  return Reader(reader, options).run();
+  const auto format = detect_format(reader);
+  if (format == FileFormat::places) return read_places(reader);
+  return Reader(reader, format, options).run();
 }
 
 PoseGraphFile read_pose_graph(const std::string& path, const ReadOptions& options) {

@@ -58,9 +58,10 @@ std::vector<Pose> starting_poses(const PoseGraph<Pose>& graph, const EdgeRoles& 
 template <class Pose>
 MinimizeSummary minimize_by_kernel(NormalEquations<Pose>& equations,
                                    const std::vector<bool>& robust, const OptimizeOptions& options,
-                                   std::vector<Pose>& poses, Eigen::VectorXd& weights) {
+                                   const RunContext& run, std::vector<Pose>& poses,
+                                   Eigen::VectorXd& weights) {
   const MinimizeOptions minimize_options{options.algorithm, options.max_iterations,
-                                         options.cost_tolerance, options.progress};
+                                         options.cost_tolerance, run.progress};
   switch (options.kernel) {
     case RobustKernel::sc:
       return minimize_switchable(equations, robust, options.kernel_width, minimize_options, poses,
@@ -95,13 +96,26 @@ void OptimizeOptions::validate() const {
 }
 
 template <class Pose>
-OptimizeResult<Pose> optimize(const PoseGraph<Pose>& graph, const OptimizeOptions& options) {
-  return optimize(graph, edge_roles(graph), options);
+OptimizeResult<Pose> optimize(const PoseGraph<Pose>& graph, const OptimizeOptions& options,
+                              const RunContext& run) {
+  return optimize(graph, edge_roles(graph), options, run);
+}
+
+OptimizedGraph optimize(const AnyPoseGraph& any, const OptimizeOptions& options,
+                        const RunContext& run) {
+  return std::visit(
+      [&](const auto& graph) {
+        auto result = optimize(graph, options, run);
+        auto optimized = graph;
+        optimized.poses = std::move(result.poses);
+        return OptimizedGraph{std::move(result), std::move(optimized)};
+      },
+      any);
 }
 
 template <class Pose>
 OptimizeResult<Pose> optimize(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                              const OptimizeOptions& given) {
+                              const OptimizeOptions& given, const RunContext& run) {
   given.validate();
   const auto start = std::chrono::steady_clock::now();
   const OptimizeOptions options = resolve(given, Pose::kDof);
@@ -112,7 +126,8 @@ OptimizeResult<Pose> optimize(const PoseGraph<Pose>& graph, const EdgeRoles& rol
   OptimizeResult<Pose> result;
   NormalEquations<Pose> equations(prepared.graph);
   result.poses = starting_poses(prepared.graph, roles, options.initialization, equations);
-  const auto summary = minimize_by_kernel(equations, robust, options, result.poses, result.weight);
+  const auto summary =
+      minimize_by_kernel(equations, robust, options, run, result.poses, result.weight);
 
   result.status = summary.status;
   result.iterations = summary.iterations;
@@ -126,11 +141,13 @@ OptimizeResult<Pose> optimize(const PoseGraph<Pose>& graph, const EdgeRoles& rol
   return result;
 }
 
-template OptimizeResult<Pose2> optimize(const PoseGraph<Pose2>&, const OptimizeOptions&);
-template OptimizeResult<Pose3> optimize(const PoseGraph<Pose3>&, const OptimizeOptions&);
+template OptimizeResult<Pose2> optimize(const PoseGraph<Pose2>&, const OptimizeOptions&,
+                                        const RunContext&);
+template OptimizeResult<Pose3> optimize(const PoseGraph<Pose3>&, const OptimizeOptions&,
+                                        const RunContext&);
 template OptimizeResult<Pose2> optimize(const PoseGraph<Pose2>&, const EdgeRoles&,
-                                        const OptimizeOptions&);
+                                        const OptimizeOptions&, const RunContext&);
 template OptimizeResult<Pose3> optimize(const PoseGraph<Pose3>&, const EdgeRoles&,
-                                        const OptimizeOptions&);
+                                        const OptimizeOptions&, const RunContext&);
 
 }  // namespace isotherm::slam

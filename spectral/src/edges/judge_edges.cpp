@@ -213,6 +213,13 @@ double jaccard_index(const WeightedGraph& graph, Index edge) {
   return all == 0 ? -1.0 : static_cast<double>(common) / static_cast<double>(all);
 }
 
+WeightedGraph apply_verdicts(const WeightedGraph& graph, const EdgeVerdicts& verdicts,
+                             bool keep_ambiguous) {
+  std::vector<bool> keep;
+  for (const auto& verdict : verdicts) keep.push_back(stays(verdict, keep_ambiguous));
+  return filter_edges(graph, keep);
+}
+
 JudgeEdgesResult judge_edges(const WeightedGraph& graph, const JudgeEdgesOptions& options,
                              const Eigen::MatrixXd& positions) {
   options.validate();

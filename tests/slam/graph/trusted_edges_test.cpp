@@ -59,7 +59,7 @@ TEST_F(TrustedEdges, RowsWithoutAnEdgeAreErrors) {
 TEST_F(TrustedEdges, TrustedLoopsAreNotJudgedAndDoNotJoinTheChain) {
   const auto roles = read("edge\n0\n1\n2\n3\n");
   EXPECT_EQ(OdometryChain<Pose2>(graph, roles).chain_count(), 1);
-  const auto result = prune(graph, roles, {.method = PruneMethod::chi2});
+  const auto result = prune(graph, roles, Chi2PruneOptions{});
   ASSERT_EQ(result.verdicts.size(), 1u);
   EXPECT_EQ(result.verdicts[0].edge, 4);
   EXPECT_EQ(result.verdicts[0].verdict, spectral::Verdict::prune);

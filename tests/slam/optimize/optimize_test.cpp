@@ -322,9 +322,8 @@ TYPED_TEST(Optimize, SameInputSameBytes) {
 TYPED_TEST(Optimize, CanBeCancelled) {
   using Pose = TypeParam;
   const auto [graph, truth] = random_loop_graph<Pose>(this->random, 10, 10, 1.0);
-  OptimizeOptions options;
-  options.progress = [](const Progress& progress) { return progress.done < 1; };
-  EXPECT_THROW(optimize(graph, options), Cancelled);
+  const auto stop = [](const Progress& progress) { return progress.done < 1; };
+  EXPECT_THROW(optimize(graph, {}, {.progress = stop}), Cancelled);
 }
 
 TYPED_TEST(Optimize, RejectsWhatItCannotRead) {

@@ -201,8 +201,8 @@ TEST(CurveEvidence, LoopsBetweenTwoChainsAreCompared) {
 TEST(CurveEvidence, ManyThreadsGiveTheSame) {
   const auto graph = with_loops(two_laps());
   for (const auto& options : all_comparisons()) {
-    EXPECT_EQ(scores(curve_evidence(graph, edge_roles(graph), options, 1)),
-              scores(curve_evidence(graph, edge_roles(graph), options, 3)));
+    EXPECT_EQ(scores(curve_evidence(graph, edge_roles(graph), options, {.threads = 1})),
+              scores(curve_evidence(graph, edge_roles(graph), options, {.threads = 3})));
   }
 }
 
@@ -223,7 +223,7 @@ TEST(CurveEvidence, RejectsOptionsOutOfRange) {
 
 TEST(PruneByCurves, PrunesTheLoopsBetweenDifferentPlaces) {
   const auto graph = with_loops(two_laps());
-  const auto result = prune(graph, edge_roles(graph), {.method = PruneMethod::lap_line});
+  const auto result = prune(graph, edge_roles(graph), CurvePruneOptions{});
   ASSERT_EQ(result.verdicts.size(), 10U);
   for (int k = 0; k < 10; ++k) {
     EXPECT_EQ(result.verdicts[k].verdict,
@@ -238,25 +238,24 @@ TEST(PruneByCurves, SaysWhereItKnowsNothing) {
   for (int k = 0; k < 5; ++k) poses.emplace_back(k, 0.0, 0.0);
   auto graph = graph_along(poses);
   add_loop(graph, 0, 4, Pose2());
-  const auto result = prune(graph, edge_roles(graph), {.method = PruneMethod::lap_line});
+  const auto result = prune(graph, edge_roles(graph), CurvePruneOptions{});
   EXPECT_EQ(result.verdicts[0].verdict, spectral::Verdict::keep);
   EXPECT_EQ(result.verdicts[0].stage, "short-path");
   EXPECT_EQ(result.warnings.size(), 1U);
-  EXPECT_THROW(prune(graph, edge_roles(graph), {.curve_threshold = 2.0}), InvalidArgument);
+  EXPECT_THROW(prune(graph, edge_roles(graph), CurvePruneOptions{.curve_threshold = 2.0}),
+               InvalidArgument);
 }
 
 TEST(CurveEvidence, TellsTrueFromFalseLoopsOfBicocca) {
   ISOTHERM_REAL_DATA_OR_SKIP(file, "paper/b25b/B25b_0.000.g2o");
   ISOTHERM_REAL_DATA_OR_SKIP(truth, "paper/b25b/Bicocca_2009-02-25b-GT-extended.csv");
   ISOTHERM_REAL_DATA_OR_SKIP(stamps, "paper/b25b/B25b_timestamps.txt");
-  const auto graph = std::get<PoseGraph<Pose2>>(read_pose_graph(file.string()).graph);
+  const auto graph = as<Pose2>(read_pose_graph(file.string()));
   const auto roles = edge_roles(graph);
   const auto labels =
       label_candidates(graph, roles, read_ground_truth(graph, {truth.string(), stamps.string()}));
   const auto auc = [&](const CurveEvidenceOptions& curve) {
-    PruneOptions options{.method = PruneMethod::lap_line};
-    options.heat.induction.curve = curve;
-    return evaluate_loops(prune(graph, roles, options).verdicts, labels).auc;
+    return evaluate_loops(prune(graph, roles, CurvePruneOptions{curve}).verdicts, labels).auc;
   };
   EXPECT_GT(auc({}), 0.8);
   const double faithful = auc({.comparison = CurveComparison::lap_line});

@@ -178,14 +178,12 @@ TEST(HeatPrune, RejectsOptionsOutOfRange) {
   bad([](auto& o) { o.konst = {std::nan("")}; });
   bad([](auto& o) { o.tolerance = 0.0; });
   bad([](auto& o) { o.min_separation = 2.0; });
-  bad([](auto& o) { o.threads = -1; });
 }
 
 TEST(HeatPrune, StopsWhenAsked) {
   const auto graph = corrupted_city().graph;
-  HeatPruneOptions options;
-  options.progress = [](const Progress&) { return false; };
-  EXPECT_THROW(heat_prune(graph, edge_roles(graph), options), Cancelled);
+  const auto stop = [](const Progress&) { return false; };
+  EXPECT_THROW(heat_prune(graph, edge_roles(graph), {}, {.progress = stop}), Cancelled);
 }
 
 }  // namespace

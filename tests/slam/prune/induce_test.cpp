@@ -49,7 +49,7 @@ TEST(Induce, OdometryKeepsItsWeightAndLoopsFollowChi2) {
 TEST(Induce, UniformWeights) {
   const auto graph = chain_with_loops();
   const auto induced =
-      induce(graph, edge_roles(graph), {.init = Initialisation::uniform, .loop_weight = 0.25});
+      induce(graph, edge_roles(graph), {.weights = LoopWeights::uniform, .loop_weight = 0.25});
   EXPECT_EQ(induced.graph.edge(2).weight, 0.25);
   EXPECT_EQ(induced.graph.edge(0).weight, 1.0);
 }
@@ -57,13 +57,13 @@ TEST(Induce, UniformWeights) {
 TEST(Induce, CurvesWeightLoopsAloneOrTogetherWithChi2) {
   const auto graph = chain_with_loops();
   const auto roles = edge_roles(graph);
-  InductionOptions options{.init = Initialisation::lap_line, .loop_weight = 0.5};
+  InductionOptions options{.weights = LoopWeights::lap_line, .loop_weight = 0.5};
   options.curve.windows = {2.0};
   options.curve.step = 0.25;
   const auto checks = odometry_chi2(graph, roles);
   const auto evidence = curve_evidence(graph, roles, options.curve);
   const auto by_curve = induce(graph, roles, options);
-  options.init = Initialisation::both;
+  options.weights = LoopWeights::both;
   const auto by_both = induce(graph, roles, options);
   for (std::size_t c = 0; c < roles.candidates.size(); ++c) {
     const auto edge = by_curve.constraint_edge[roles.candidates[c]];

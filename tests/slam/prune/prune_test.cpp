@@ -19,7 +19,7 @@ using spectral::Verdict;
 TEST(Prune, Chi2GateIsTheQuantile) {
   const auto city = simulate_city({.poses = 500, .measurements = {.loops = 300}, .seed = 1});
   const auto roles = edge_roles(city.graph);
-  const auto result = prune(city.graph, roles, {.method = PruneMethod::chi2, .significance = 0.05});
+  const auto result = prune(city.graph, roles, Chi2PruneOptions{.significance = 0.05});
   const auto checks = odometry_chi2(city.graph, roles);
   for (std::size_t c = 0; c < checks.size(); ++c) {
     EXPECT_EQ(result.verdicts[c].score, checks[c].chi2);
@@ -33,7 +33,7 @@ TEST(Prune, LoopsBetweenPartsAreKeptWithAWarning) {
   PoseGraph<Pose2> graph;
   graph.ids = {0, 1, 2, 3};
   graph.constraints = {{0, 1, Pose2(1, 0, 0)}, {2, 3, Pose2(1, 0, 0)}, {0, 3, Pose2(9, 9, 1)}};
-  const auto result = prune(graph, edge_roles(graph), {.method = PruneMethod::chi2});
+  const auto result = prune(graph, Chi2PruneOptions{});
   ASSERT_EQ(result.verdicts.size(), 1u);
   EXPECT_EQ(result.verdicts[0].verdict, Verdict::keep);
   EXPECT_EQ(result.verdicts[0].stage, "no-odometry-path");
@@ -43,8 +43,7 @@ TEST(Prune, LoopsBetweenPartsAreKeptWithAWarning) {
 TEST(Prune, Chi2SeparatesTheRealLoopsOfBicocca) {
   ISOTHERM_REAL_DATA_OR_SKIP(folder, "paper/b25b");
   const auto file = read_pose_graph((folder / "B25b_0.000.g2o").string());
-  const auto& graph = std::get<PoseGraph<Pose2>>(file.graph);
-  const auto result = prune(graph, edge_roles(graph), {.method = PruneMethod::chi2});
+  const auto result = prune(file, Chi2PruneOptions{});
   EXPECT_EQ(result.verdicts.size(), 446u);
   EXPECT_EQ(count(result.verdicts, Verdict::prune), 211);
 }
@@ -65,10 +64,56 @@ TEST(ApplyVerdicts, LeavesOutPrunedAndByDefaultAmbiguous) {
   EXPECT_THROW(apply_verdicts(graph, verdicts), InvalidArgument);
 }
 
-TEST(PruneOptions, RejectsSignificanceOutOfRange) {
-  for (const double significance : {1.0, 1.5, -0.1}) {
-    EXPECT_THROW(PruneOptions{.significance = significance}.validate(), InvalidArgument);
+TEST(PruneMethods, AreKnownByName) {
+  const auto methods = prune_methods();
+  ASSERT_EQ(methods.size(), std::variant_size_v<PruneOptions>);
+  for (std::size_t k = 0; k < methods.size(); ++k) {
+    EXPECT_EQ(methods[k].index(), k);
+    EXPECT_EQ(prune_method(method_name(methods[k])).index(), k) << "a name of its own";
+    EXPECT_FALSE(method_title(methods[k]).empty());
   }
+  EXPECT_EQ(method_name({}), "consensus") << "the default";
+  EXPECT_THROW(prune_method("magic"), InvalidArgument);
+}
+
+TEST(PruneMethods, OptionsOutOfRange) {
+  const PoseGraph<Pose2> graph;
+  for (const double significance : {1.0, 1.5, 0.0, -0.1}) {
+    EXPECT_THROW(prune(graph, Chi2PruneOptions{.significance = significance}), InvalidArgument);
+  }
+  EXPECT_THROW(prune(graph, DcsOptions{.kernel_width = -1.0}), InvalidArgument);
+}
+
+// The same decisions, whether a graph's roles are given or found, its dimension known or not.
+TEST(PruneMethods, GraphsOfAnyDimensionWithTheirOwnRoles) {
+  const auto city = simulate_city({.poses = 200, .measurements = {.loops = 80}, .seed = 3});
+  const auto bad = corrupt(city.graph, city.truth, {.count = 40, .seed = 3});
+  const auto scores = [](const PruneResult& result) {
+    std::vector<double> all;
+    for (const auto& verdict : result.verdicts) all.push_back(verdict.score);
+    return all;
+  };
+  for (const auto& method : prune_methods()) {
+    const auto given = prune(bad.graph, edge_roles(bad.graph), method);
+    EXPECT_EQ(given.method, method_name(method));
+    EXPECT_EQ(given.verdicts.size(), 120u);
+    EXPECT_EQ(scores(prune(bad.graph, method)), scores(given)) << method_name(method);
+    EXPECT_EQ(scores(prune(AnyPoseGraph(bad.graph), method)), scores(given));
+  }
+}
+
+TEST(PruneMethods, SameVerdictsForAnyNumberOfThreads) {
+  const auto city = simulate_city({.poses = 400, .measurements = {.loops = 150}, .seed = 5});
+  const auto bad = corrupt(city.graph, city.truth, {.count = 150, .seed = 5});
+  for (const char* method : {"heat", "lap-line"}) {
+    const auto one = prune(bad.graph, prune_method(method), {.threads = 1});
+    const auto three = prune(bad.graph, prune_method(method), {.threads = 3});
+    for (std::size_t k = 0; k < one.verdicts.size(); ++k) {
+      EXPECT_EQ(one.verdicts[k].verdict, three.verdicts[k].verdict);
+      EXPECT_EQ(one.verdicts[k].score, three.verdicts[k].score);
+    }
+  }
+  EXPECT_THROW(prune(bad.graph, HeatPruneOptions{}, {.threads = -1}), InvalidArgument);
 }
 
 // Every real graph of the list loads and prunes.
@@ -77,15 +122,10 @@ class RealGraphs : public testing::TestWithParam<const char*> {};
 TEST_P(RealGraphs, LoadAndPrune) {
   ISOTHERM_REAL_DATA_OR_SKIP(path, GetParam());
   const auto file = read_pose_graph(path.string());
-  std::visit(
-      [](const auto& graph) {
-        const auto roles = edge_roles(graph);
-        for (const auto method : {PruneMethod::heat, PruneMethod::chi2}) {
-          const auto result = prune(graph, roles, {.method = method, .heat = {.tolerance = 1e-4}});
-          EXPECT_EQ(result.verdicts.size(), roles.candidates.size());
-        }
-      },
-      file.graph);
+  const auto candidates =
+      std::visit([](const auto& graph) { return edge_roles(graph).candidates.size(); }, file.graph);
+  EXPECT_EQ(prune(file, HeatPruneOptions{.tolerance = 1e-4}).verdicts.size(), candidates);
+  EXPECT_EQ(prune(file, Chi2PruneOptions{}).verdicts.size(), candidates);
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, RealGraphs,

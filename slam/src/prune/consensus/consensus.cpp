@@ -19,7 +19,7 @@ void ConsensusOptions::validate() const {
 
 template <class Pose>
 ConsensusResult consensus(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                          const ConsensusOptions& options) {
+                          const ConsensusOptions& options, const RunContext& run) {
   options.validate();
   ConsensusResult result;
   result.verdicts = candidate_verdicts(graph, roles);
@@ -29,24 +29,21 @@ ConsensusResult consensus(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
   // False loops among the accepted ones would widen the covariances, and let more in: the
   // file is taken at its word as long as that explains what is accepted, or proves more.
   std::optional<detail::Search<Pose>> search;
-  search.emplace(reduced, pairs, options, false);
+  search.emplace(reduced, pairs, options, run, false);
   search->run();
   search->report(result);
   if (options.calibrate && search->asks_for_wider()) {
     const auto proven = search->count_proven();
-    search.emplace(reduced, pairs, options, true);
+    search.emplace(reduced, pairs, options, run, true);
     search->run();
     if (search->count_proven() > proven) search->report(result);
-  }
-  for (auto& info : result.details) {
-    for (Index& loop : info.conflicts) loop = roles.candidates[loop];
   }
   return result;
 }
 
 template ConsensusResult consensus(const PoseGraph<Pose2>&, const EdgeRoles&,
-                                   const ConsensusOptions&);
+                                   const ConsensusOptions&, const RunContext&);
 template ConsensusResult consensus(const PoseGraph<Pose3>&, const EdgeRoles&,
-                                   const ConsensusOptions&);
+                                   const ConsensusOptions&, const RunContext&);
 
 }  // namespace isotherm::slam

@@ -102,8 +102,8 @@ void score_by_median(std::vector<CurveEvidence>& evidence) {
 
 template <class Pose>
 std::vector<CurveEvidence> compare_descriptors(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                                               const CurveEvidenceOptions& options, int threads,
-                                               const ProgressCallback& progress) {
+                                               const CurveEvidenceOptions& options,
+                                               const RunContext& run) {
   const Paths<Pose> paths(graph, roles);
   std::vector<CurveEvidence> evidence(roles.candidates.size());
   auto lap_line = options.lap_line;
@@ -122,7 +122,8 @@ std::vector<CurveEvidence> compare_descriptors(const PoseGraph<Pose>& graph, con
     evidence[c].disparity = found.rms;
     evidence[c].compared = found.samples > 1;
   };
-  parallel_for(static_cast<std::int64_t>(evidence.size()), threads, progress, "lap-line", compare);
+  parallel_for(static_cast<std::int64_t>(evidence.size()), run.threads, run.progress, "lap-line",
+               compare);
   score_by_median(evidence);
   return evidence;
 }
@@ -233,8 +234,8 @@ class CommonFrame {
 template <class Pose>
 std::vector<CurveEvidence> compare_in_common_frame(const PoseGraph<Pose>& graph,
                                                    const EdgeRoles& roles,
-                                                   const CurveEvidenceOptions& options, int threads,
-                                                   const ProgressCallback& progress) {
+                                                   const CurveEvidenceOptions& options,
+                                                   const RunContext& run) {
   const Paths<Pose> paths(graph, roles);
   std::vector<CurveEvidence> evidence(roles.candidates.size());
   for (auto& e : evidence) e.score = 0.0;
@@ -249,8 +250,8 @@ std::vector<CurveEvidence> compare_in_common_frame(const PoseGraph<Pose>& graph,
       evidence[c].score += found.score;
       ++windows_compared[c];
     };
-    parallel_for(static_cast<std::int64_t>(evidence.size()), threads, progress, "common frame",
-                 compare);
+    parallel_for(static_cast<std::int64_t>(evidence.size()), run.threads, run.progress,
+                 "common frame", compare);
   }
   for (std::size_t c = 0; c < evidence.size(); ++c) {
     if (!evidence[c].compared) {
@@ -286,23 +287,21 @@ void CurveEvidenceOptions::validate() const {
 
 template <class Pose>
 std::vector<CurveEvidence> curve_evidence(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                                          const CurveEvidenceOptions& options, int threads,
-                                          const ProgressCallback& progress) {
+                                          const CurveEvidenceOptions& options,
+                                          const RunContext& run) {
   options.validate();
   switch (options.comparison) {
     case CurveComparison::lap_line:
-      return compare_descriptors(graph, roles, options, threads, progress);
+      return compare_descriptors(graph, roles, options, run);
     case CurveComparison::common_frame:
-      return compare_in_common_frame(graph, roles, options, threads, progress);
+      return compare_in_common_frame(graph, roles, options, run);
   }
   throw InvalidArgument("curve", "unknown");
 }
 
 template std::vector<CurveEvidence> curve_evidence(const PoseGraph<Pose2>&, const EdgeRoles&,
-                                                   const CurveEvidenceOptions&, int,
-                                                   const ProgressCallback&);
+                                                   const CurveEvidenceOptions&, const RunContext&);
 template std::vector<CurveEvidence> curve_evidence(const PoseGraph<Pose3>&, const EdgeRoles&,
-                                                   const CurveEvidenceOptions&, int,
-                                                   const ProgressCallback&);
+                                                   const CurveEvidenceOptions&, const RunContext&);
 
 }  // namespace isotherm::slam

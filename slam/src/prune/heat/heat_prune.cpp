@@ -26,10 +26,12 @@ double konst_at(const HeatPruneOptions& options, std::size_t scale) {
 template <class Pose>
 class Pruner {
  public:
-  Pruner(const PoseGraph<Pose>& graph, const EdgeRoles& roles, const HeatPruneOptions& options)
+  Pruner(const PoseGraph<Pose>& graph, const EdgeRoles& roles, const HeatPruneOptions& options,
+         const RunContext& run)
       : roles_(roles),
         options_(options),
-        induced_(induce(graph, roles, options.induction, options.threads, options.progress)) {
+        run_(run),
+        induced_(induce(graph, roles, options.induction, run)) {
     keep_.assign(induced_.graph.edge_count(), true);
     result_.verdicts = candidate_verdicts(graph, roles);
     for (std::size_t c = 0; c < roles_.candidates.size(); ++c) {
@@ -77,10 +79,9 @@ class Pruner {
       pairs.push_back({edge.from, edge.to});
     }
     const auto graph = spectral::filter_edges(induced_.graph, keep_);
-    const auto heat = spectral::heat_distances(graph, pairs, std::vector<double>{scale},
-                                               {.tolerance = options_.tolerance,
-                                                .threads = options_.threads,
-                                                .progress = options_.progress});
+    const auto heat = spectral::heat_distances(
+        graph, pairs, std::vector<double>{scale},
+        {.tolerance = options_.tolerance, .threads = run_.threads, .progress = run_.progress});
     result_.unconverged += heat.unconverged;
     result_.widest_bracket = std::max(result_.widest_bracket, heat.widest);
     return heat.column(0);
@@ -134,6 +135,7 @@ class Pruner {
 
   const EdgeRoles& roles_;
   const HeatPruneOptions& options_;
+  const RunContext& run_;
   InducedGraph induced_;
   std::vector<bool> keep_;  // per edge of the induced graph
   HeatPruneResult result_;
@@ -161,7 +163,6 @@ void HeatPruneOptions::validate() const {
     throw InvalidArgument("min_separation", "must be in [0, 1]");
   }
   if (!(tolerance > 0.0)) throw InvalidArgument("tolerance", "must be positive");
-  if (threads < 0) throw InvalidArgument("threads", "must not be negative");
   induction.validate();
 }
 
@@ -174,14 +175,14 @@ HeatPruneOptions datta2016() {
 
 template <class Pose>
 HeatPruneResult heat_prune(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                           const HeatPruneOptions& options) {
+                           const HeatPruneOptions& options, const RunContext& run) {
   options.validate();
-  return Pruner<Pose>(graph, roles, options).run();
+  return Pruner<Pose>(graph, roles, options, run).run();
 }
 
 template HeatPruneResult heat_prune(const PoseGraph<Pose2>&, const EdgeRoles&,
-                                    const HeatPruneOptions&);
+                                    const HeatPruneOptions&, const RunContext&);
 template HeatPruneResult heat_prune(const PoseGraph<Pose3>&, const EdgeRoles&,
-                                    const HeatPruneOptions&);
+                                    const HeatPruneOptions&, const RunContext&);
 
 }  // namespace isotherm::slam

@@ -8,18 +8,17 @@ namespace {
 
 template <class Pose>
 std::vector<double> candidate_weights(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                                      const InductionOptions& options, int threads,
-                                      const ProgressCallback& progress) {
-  const bool both = options.init == Initialisation::both;
+                                      const InductionOptions& options, const RunContext& run) {
+  const bool both = options.weights == LoopWeights::both;
   std::vector<double> weights(roles.candidates.size(), options.loop_weight);
-  if (both || options.init == Initialisation::chi2) {
+  if (both || options.weights == LoopWeights::chi2) {
     const auto checks = odometry_chi2(graph, roles);
     for (std::size_t c = 0; c < weights.size(); ++c) {
       weights[c] /= 1.0 + checks[c].chi2 / Pose::kDof;
     }
   }
-  if (both || options.init == Initialisation::lap_line) {
-    const auto evidence = curve_evidence(graph, roles, options.curve, threads, progress);
+  if (both || options.weights == LoopWeights::lap_line) {
+    const auto evidence = curve_evidence(graph, roles, options.curve, run);
     for (std::size_t c = 0; c < weights.size(); ++c) weights[c] *= 1.0 - evidence[c].score;
   }
   return weights;
@@ -35,11 +34,10 @@ void InductionOptions::validate() const {
 
 template <class Pose>
 InducedGraph induce(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                    const InductionOptions& options, int threads,
-                    const ProgressCallback& progress) {
+                    const InductionOptions& options, const RunContext& run) {
   options.validate();
   std::vector<double> weight(graph.constraints.size(), options.odometry_weight);
-  const auto candidate_weight = candidate_weights(graph, roles, options, threads, progress);
+  const auto candidate_weight = candidate_weights(graph, roles, options, run);
   for (std::size_t c = 0; c < candidate_weight.size(); ++c) {
     weight[roles.candidates[c]] = candidate_weight[c];
   }
@@ -58,8 +56,8 @@ InducedGraph induce(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
 }
 
 template InducedGraph induce(const PoseGraph<Pose2>&, const EdgeRoles&, const InductionOptions&,
-                             int, const ProgressCallback&);
+                             const RunContext&);
 template InducedGraph induce(const PoseGraph<Pose3>&, const EdgeRoles&, const InductionOptions&,
-                             int, const ProgressCallback&);
+                             const RunContext&);
 
 }  // namespace isotherm::slam

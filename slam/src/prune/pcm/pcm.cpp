@@ -111,7 +111,7 @@ void PcmOptions::validate() const {
 
 template <class Pose>
 PcmResult pcm(const PoseGraph<Pose>& given, const EdgeRoles& roles, const PcmOptions& options,
-              const ProgressCallback& progress) {
+              const RunContext& run) {
   options.validate();
   const PoseGraph<Pose> graph = prepare(given).graph;
   PcmResult result;
@@ -142,8 +142,8 @@ PcmResult pcm(const PoseGraph<Pose>& given, const EdgeRoles& roles, const PcmOpt
                               chi_squared_quantile(options.pcm_pair_confidence, Pose::kDof));
   BitGraph agreement(count);
   for (Index a = 0; a < count; ++a) {
-    if (progress &&
-        !progress({"pcm", static_cast<std::uint64_t>(a), static_cast<std::uint64_t>(count)})) {
+    if (run.progress &&
+        !run.progress({"pcm", static_cast<std::uint64_t>(a), static_cast<std::uint64_t>(count)})) {
       throw Cancelled();
     }
     for (Index b = a + 1; b < count; ++b) {
@@ -168,8 +168,8 @@ PcmResult pcm(const PoseGraph<Pose>& given, const EdgeRoles& roles, const PcmOpt
 }
 
 template PcmResult pcm(const PoseGraph<Pose2>&, const EdgeRoles&, const PcmOptions&,
-                       const ProgressCallback&);
+                       const RunContext&);
 template PcmResult pcm(const PoseGraph<Pose3>&, const EdgeRoles&, const PcmOptions&,
-                       const ProgressCallback&);
+                       const RunContext&);
 
 }  // namespace isotherm::slam

@@ -34,11 +34,11 @@ template <class Pose>
 class Rrr {
  public:
   Rrr(const PoseGraph<Pose>& graph, const EdgeRoles& roles, const RrrOptions& options,
-      const ProgressCallback& progress)
+      const RunContext& run)
       : graph_(graph),
         roles_(roles),
         options_(options),
-        progress_(progress),
+        run_(run),
         odometry_(graph, roles),
         loop_limit_(chi_squared_quantile(options.rrr_confidence, Pose::kDof)),
         verdicts_(candidate_verdicts(graph, roles)),
@@ -84,7 +84,7 @@ class Rrr {
   }
 
   void report(std::size_t done) const {
-    if (progress_ && !progress_({"rrr", done, 0})) throw Cancelled();
+    if (run_.progress && !run_.progress({"rrr", done, 0})) throw Cancelled();
   }
 
   void reject(Index candidate, const Consistency& why, const char* stage) {
@@ -334,7 +334,7 @@ class Rrr {
   const PoseGraph<Pose>& graph_;
   const EdgeRoles& roles_;
   const RrrOptions& options_;
-  const ProgressCallback& progress_;
+  const RunContext& run_;
   OdometryChain<Pose> odometry_;
   double loop_limit_;
   EdgeVerdicts verdicts_;
@@ -355,15 +355,15 @@ void RrrOptions::validate() const {
 
 template <class Pose>
 EdgeVerdicts rrr(const PoseGraph<Pose>& graph, const EdgeRoles& roles, const RrrOptions& options,
-                 const ProgressCallback& progress) {
+                 const RunContext& run) {
   options.validate();
   const auto prepared = prepare(graph);
-  return Rrr<Pose>(prepared.graph, roles, options, progress).run();
+  return Rrr<Pose>(prepared.graph, roles, options, run).run();
 }
 
 template EdgeVerdicts rrr(const PoseGraph<Pose2>&, const EdgeRoles&, const RrrOptions&,
-                          const ProgressCallback&);
+                          const RunContext&);
 template EdgeVerdicts rrr(const PoseGraph<Pose3>&, const EdgeRoles&, const RrrOptions&,
-                          const ProgressCallback&);
+                          const RunContext&);
 
 }  // namespace isotherm::slam

@@ -67,9 +67,7 @@ TYPED_TEST(ConsensusOf, FindsFalseLoops) {
       EXPECT_EQ(verdict.verdict == Verdict::prune, !result.details[k].conflicts.empty());
       EXPECT_LE(result.details[k].conflicts.size(), 3u);
       for (const Index other : result.details[k].conflicts) {
-        EXPECT_TRUE(std::ranges::any_of(result.verdicts, [other](const auto& kept) {
-          return kept.edge == other && kept.verdict == Verdict::keep;
-        }));
+        EXPECT_EQ(result.verdicts.at(other).verdict, Verdict::keep);
       }
     }
   }
@@ -446,31 +444,15 @@ TYPED_TEST(ConsensusOf, ProgressIsReportedAndCanCancel) {
   const auto made = random_loop_graph<Pose>(random, 60, 30, 1.0);
   const auto roles = edge_roles(made.graph);
   int calls = 0;
-  ConsensusOptions options;
-  options.progress = [&calls](const Progress& progress) {
+  const auto count = [&calls](const Progress& progress) {
     EXPECT_LE(progress.done, progress.total);
     ++calls;
     return true;
   };
-  const auto result = consensus(made.graph, roles, options);
+  const auto result = consensus(made.graph, roles, {}, {.progress = count});
   EXPECT_GE(calls, 2 * static_cast<int>(result.rounds.size()));
-  options.progress = [](const Progress&) { return false; };
-  EXPECT_THROW(consensus(made.graph, roles, options), Cancelled);
-}
-
-TEST(Consensus, SameVerdictsForAnyNumberOfThreads) {
-  const auto city =
-      simulate_city({.poses = 400, .measurements = {.loops = 150, .drift = 10.0}, .seed = 5});
-  const auto bad =
-      corrupt(city.graph, city.truth, {.type = NoiseType::random_grouped, .count = 150, .seed = 5});
-  const auto roles = edge_roles(bad.graph);
-  const auto one = prune(bad.graph, roles, {.threads = 1});
-  const auto two = prune(bad.graph, roles, {.threads = 2});
-  for (std::size_t k = 0; k < one.verdicts.size(); ++k) {
-    EXPECT_EQ(one.verdicts[k].verdict, two.verdicts[k].verdict);
-    EXPECT_EQ(one.verdicts[k].score, two.verdicts[k].score);
-    EXPECT_EQ(one.verdicts[k].stage, two.verdicts[k].stage);
-  }
+  const auto stop = [](const Progress&) { return false; };
+  EXPECT_THROW(consensus(made.graph, roles, {}, {.progress = stop}), Cancelled);
 }
 
 TEST(Consensus, SurvivesDriftAndGroupsInACity) {
@@ -489,7 +471,7 @@ TYPED_TEST(ConsensusOf, WithoutInformationPruneFallsBackOnHeat) {
   auto made = random_loop_graph<Pose>(random, 30, 10, 0.0);
   for (auto& constraint : made.graph.constraints) constraint.information.setZero();
   const auto result = prune(made.graph, edge_roles(made.graph));
-  EXPECT_EQ(result.method, PruneMethod::heat);
+  EXPECT_EQ(result.method, "heat");
   EXPECT_THAT(result.warnings, testing::Contains(testing::HasSubstr("heat distances")));
 }
 

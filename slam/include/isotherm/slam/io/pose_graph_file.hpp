@@ -1,17 +1,14 @@
 #pragma once
 
 #include <string>
-#include <variant>
+#include <utility>
 #include <vector>
 
 #include "isotherm/base/read_report.hpp"
 #include "isotherm/base/text_reader.hpp"
-#include "isotherm/slam/graph/pose_graph.hpp"
+#include "isotherm/slam/graph/any_pose_graph.hpp"
 
 namespace isotherm::slam {
-
-/// A pose graph in the plane or in space.
-using AnyPoseGraph = std::variant<PoseGraph<Pose2>, PoseGraph<Pose3>>;
 
 /// A pose graph as a file has it.
 ///
@@ -26,6 +23,11 @@ struct PoseGraphFile {
   ReadReport report;
   /// Comments and records of kinds this library does not know, as they stand.
   std::vector<std::string> other_lines;
+
+  // A file is its graph where a graph is asked for.
+  operator const AnyPoseGraph&() const& { return graph; }
+  operator AnyPoseGraph&() & { return graph; }
+  operator AnyPoseGraph&&() && { return std::move(graph); }
 };
 
 /// Reads a pose graph, telling the format by its content: g2o with SE2 or

@@ -8,7 +8,8 @@
 #include <Eigen/Core>
 
 #include "isotherm/base/options.hpp"
-#include "isotherm/base/progress.hpp"
+#include "isotherm/base/run_context.hpp"
+#include "isotherm/slam/graph/any_pose_graph.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm/slam/optimize/initialize.hpp"
 #include "isotherm/slam/optimize/robust_kernel.hpp"
@@ -44,7 +45,6 @@ struct OptimizeOptions {
   /// Converged where what is left to gain, extrapolated from the last two steps,
   /// is less than this fraction of the cost; > 0.
   double cost_tolerance = 1e-6;
-  ProgressCallback progress = {};  ///< one unit an iteration
 
   void validate() const;
 };
@@ -74,20 +74,29 @@ constexpr std::array<EnumName<OptimizeStatus>, 3> enum_names(OptimizeStatus) {
            {OptimizeStatus::diverged, "diverged"}}};
 }
 
-/// What an optimisation found, and how well.
-template <class Pose>
-struct OptimizeResult {
-  std::vector<Pose> poses;  ///< T_world_vertex, one a vertex
+/// How well an optimisation went.
+struct OptimizeSummary {
   OptimizeStatus status = OptimizeStatus::converged;
   int iterations = 0;         ///< steps tried
   double initial_cost = 0.0;  ///< sum of kernel costs at the start; chi-squared without a kernel
   double final_cost = 0.0;
-  Eigen::VectorXd chi2;             ///< r' Omega r a constraint at `poses`, without the kernel
-  Eigen::VectorXd weight;           ///< the kernel's weight a constraint, 1 without a kernel
-  Index components = 0;             ///< connected components, each with its own gauge
-  std::vector<Index> held;          ///< vertices that were not moved: the gauge
+  Eigen::VectorXd chi2;     ///< r' Omega r a constraint at the poses found, without the kernel
+  Eigen::VectorXd weight;   ///< the kernel's weight a constraint, 1 without a kernel
+  Index components = 0;     ///< connected components, each with its own gauge
+  std::vector<Index> held;  ///< vertices that were not moved: the gauge
   Index projected_information = 0;  ///< information matrices with a negative eigenvalue
   double seconds = 0.0;             ///< wall clock
+};
+
+/// What an optimisation found, and how well.
+template <class Pose>
+struct OptimizeResult : OptimizeSummary {
+  std::vector<Pose> poses;  ///< T_world_vertex, one a vertex
+};
+
+/// The same where the type of the poses is not known.
+struct OptimizedGraph : OptimizeSummary {
+  AnyPoseGraph graph;  ///< with the poses found
 };
 
 /// Finds the poses with the least sum of (robust) chi-squared over all constraints,
@@ -104,14 +113,18 @@ struct OptimizeResult {
 /// nothing measures stay where the initialisation put them; eigenvalues of
 /// information below zero count as zero and are reported. An empty graph has
 /// an empty result.
+/// Progress is one unit an iteration; the number of threads plays no part.
 /// @throws InvalidArgument for bad options, a vertex index out of range, an entry
 ///   that is not finite, or `file` initialisation without poses; Cancelled.
 template <class Pose>
-OptimizeResult<Pose> optimize(const PoseGraph<Pose>& graph, const OptimizeOptions& options = {});
+OptimizeResult<Pose> optimize(const PoseGraph<Pose>& graph, const OptimizeOptions& options = {},
+                              const RunContext& run = {});
+OptimizedGraph optimize(const AnyPoseGraph& graph, const OptimizeOptions& options = {},
+                        const RunContext& run = {});
 
 /// The same with given roles: the kernel applies to roles.candidates.
 template <class Pose>
 OptimizeResult<Pose> optimize(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                              const OptimizeOptions& options);
+                              const OptimizeOptions& options, const RunContext& run = {});
 
 }  // namespace isotherm::slam

@@ -3,18 +3,24 @@
 #include <concepts>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
-#include "isotherm/base/progress.hpp"
+#include "isotherm/base/run_context.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm/spectral/edges/edge_verdicts.hpp"
 
 namespace isotherm::slam {
 
+struct PruneResult;  // prune.hpp
+
 /// Forward consensus: loops are accepted in the order in which the rest of the
 /// graph can vouch for them. See docs/concepts/consensus.md.
 struct ConsensusOptions {
+  static std::string_view method() { return "consensus"; }
+  static std::string_view title() { return "Forward consensus"; }
+
   /// Probability with which a correct loop may be pruned, and with which an
   /// accepted one may be false; in (0, 0.5). Every threshold follows from it.
   double significance = 0.0001;
@@ -26,7 +32,6 @@ struct ConsensusOptions {
   /// far as short cycles vouch for.
   bool calibrate = true;
   int max_rounds = 200;  ///< batches accepted at most, > 0
-  ProgressCallback progress = {};
 
   /// @throws InvalidArgument naming the field that is out of range.
   void validate() const;
@@ -35,11 +40,12 @@ struct ConsensusOptions {
 template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, ConsensusOptions>
 void visit_fields(Options& options, Visitor&& visit) {
+  visit("significance", options.significance,
+        "probability with which a correct loop may be pruned");
   visit("window", options.window,
-        "consensus: vertices within which the ends of loops that confirm each other lie");
-  visit("calibrate", options.calibrate,
-        "consensus: estimate the scale of the covariances from the data");
-  visit("max_rounds", options.max_rounds, "consensus: batches accepted at most");
+        "vertices within which the ends of loops that confirm each other lie");
+  visit("calibrate", options.calibrate, "estimate the scale of the covariances from the data");
+  visit("max_rounds", options.max_rounds, "batches accepted at most");
 }
 
 /// Why one candidate was decided as it was.
@@ -48,7 +54,7 @@ struct ConsensusDetail {
   double evidence = 0.0;  ///< log odds of inlier against anywhere, without the prior
   int round = 0;          ///< round that accepted it; 0: never accepted
   bool connected = true;  ///< false: neither odometry nor accepted loops join its ends
-  /// Of a pruned loop: accepted ones (constraint numbers) that stand against it, at
+  /// Of a pruned loop: accepted ones (positions among the candidates) that stand against it, at
   /// most three, nearest first. Each contradicts it with no more than the odometry
   /// between their ends; where none alone does, those nearest to it, which do so
   /// together. Empty where no accepted loop joins the same odometry chains.
@@ -93,6 +99,15 @@ struct ConsensusResult {
 /// @throws InvalidArgument, NumericalError, Cancelled
 template <class Pose>
 ConsensusResult consensus(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                          const ConsensusOptions& options = {});
+                          const ConsensusOptions& options = {}, const RunContext& run = {});
+
+namespace detail {
+
+/// The door of the method's room, through which prune() comes.
+template <class Pose>
+PruneResult prune_by(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                     const ConsensusOptions& options, const RunContext& run);
+
+}  // namespace detail
 
 }  // namespace isotherm::slam

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "isotherm/base/options.hpp"
-#include "isotherm/base/progress.hpp"
+#include "isotherm/base/run_context.hpp"
 #include "isotherm/geometry/curves/lap_line.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 
@@ -73,7 +73,7 @@ struct CurveEvidenceOptions {
 template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, CurveEvidenceOptions>
 void visit_fields(Options& options, Visitor&& visit) {
-  visit("curve", options.comparison, "lap-line: how the paths at a loop's ends are compared");
+  visit("curve", options.comparison, "how the paths at a loop's ends are compared");
   visit("lap_interval", options.lap_line.interval,
         "curve lap-line: metres between samples; 0: mean odometry step");
   visit("lap_window", options.lap_line.window, "curve lap-line: length described, in intervals");
@@ -110,7 +110,7 @@ struct CurveEvidence {
 /// @throws InvalidArgument, Cancelled
 template <class Pose>
 std::vector<CurveEvidence> curve_evidence(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                                          const CurveEvidenceOptions& options = {}, int threads = 0,
-                                          const ProgressCallback& progress = {});
+                                          const CurveEvidenceOptions& options = {},
+                                          const RunContext& run = {});
 
 }  // namespace isotherm::slam

@@ -2,10 +2,11 @@
 
 #include <concepts>
 #include <cstdint>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
-#include "isotherm/base/progress.hpp"
+#include "isotherm/base/run_context.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm/slam/prune/induce.hpp"
 #include "isotherm/spectral/edges/edge_verdicts.hpp"
@@ -13,9 +14,14 @@
 
 namespace isotherm::slam {
 
+struct PruneResult;  // prune.hpp
+
 /// Multi-scale heat-kernel pruning (S. Datta et al., "SLAM Pose-graph
 /// Robustification via Multi-scale Heat-Kernel Analysis", Algorithm 1).
 struct HeatPruneOptions {
+  static std::string_view method() { return "heat"; }
+  static std::string_view title() { return "Heat-kernel pruning"; }
+
   /// Times t of exp(-tL), from global to local; finite, > 0, descending. The
   /// default is Figure 5's list. At t = 0 every pair has distance 2, so the text's
   /// "minimum is always 0" cannot be meant.
@@ -36,8 +42,6 @@ struct HeatPruneOptions {
   InductionOptions induction;
 
   double tolerance = 1e-6;  ///< of every heat distance, absolute, > 0
-  int threads = 0;          ///< 0: all cores; results do not depend on it
-  ProgressCallback progress = {};
 
   /// @throws InvalidArgument naming the field that is out of range.
   void validate() const;
@@ -46,21 +50,20 @@ struct HeatPruneOptions {
 template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, HeatPruneOptions>
 void visit_fields(Options& options, Visitor&& visit) {
-  visit("scales", options.scales, "heat: diffusion times, descending");
-  visit("threshold", options.threshold, "heat: rule that splits the distances of a scale");
-  visit("konst", options.konst,
-        "heat: deviations above the mean, for mean-sigma; one or one a scale");
+  visit("scales", options.scales, "diffusion times, descending");
+  visit("threshold", options.threshold, "rule that splits the distances of a scale");
+  visit("konst", options.konst, "deviations above the mean, for mean-sigma; one or one a scale");
   visit("min_separation", options.min_separation,
-        "heat: share of variance an adaptive split must explain");
-  visit("init", options.induction.init, "heat: weights of the loops");
-  visit("odometry_weight", options.induction.odometry_weight, "heat: weight of odometry");
-  visit("loop_weight", options.induction.loop_weight, "heat: largest weight of a loop");
-  visit("tolerance", options.tolerance, "heat: error allowed in a heat distance");
+        "share of variance an adaptive split must explain");
+  visit("init", options.induction.weights, "weights of the loops");
+  visit("odometry_weight", options.induction.odometry_weight, "weight of odometry");
+  visit("loop_weight", options.induction.loop_weight, "largest weight of a loop");
+  visit("tolerance", options.tolerance, "error allowed in a heat distance");
   visit_fields(options.induction.curve, visit);
 }
 
 /// What the paper states: Figure 5's scales, mean + konst * sigma, weights from
-/// chi-squared (or, with init lap_line, from descriptors as it defines them). It gives
+/// chi-squared (or, with weights lap_line, from descriptors as it defines them). It gives
 /// konst only as "0 to 4, depending on the scale"; 1 is used at every scale here.
 HeatPruneOptions datta2016();
 
@@ -93,6 +96,15 @@ struct HeatPruneResult {
 /// @throws InvalidArgument, Cancelled
 template <class Pose>
 HeatPruneResult heat_prune(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                           const HeatPruneOptions& options = {});
+                           const HeatPruneOptions& options = {}, const RunContext& run = {});
+
+namespace detail {
+
+/// The door of the method's room, through which prune() comes.
+template <class Pose>
+PruneResult prune_by(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                     const HeatPruneOptions& options, const RunContext& run);
+
+}  // namespace detail
 
 }  // namespace isotherm::slam

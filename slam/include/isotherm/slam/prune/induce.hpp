@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "isotherm/base/options.hpp"
-#include "isotherm/base/progress.hpp"
+#include "isotherm/base/run_context.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm/slam/prune/curve_evidence.hpp"
 #include "isotherm/spectral/graph/weighted_graph.hpp"
@@ -13,26 +13,26 @@
 namespace isotherm::slam {
 
 /// How candidates are weighted before any spectral analysis.
-enum class Initialisation {
+enum class LoopWeights {
   chi2,      ///< 1 / (1 + chi2 / dof) with chi2 against odometry alone
   lap_line,  ///< 1 - score of the curves at its ends, see curve_evidence.hpp
   both,      ///< the product of these two
   uniform,   ///< every candidate alike
 };
 
-constexpr std::array<EnumName<Initialisation>, 4> enum_names(Initialisation) {
-  return {{{Initialisation::chi2, "chi2"},
-           {Initialisation::lap_line, "lap-line"},
-           {Initialisation::both, "both"},
-           {Initialisation::uniform, "uniform"}}};
+constexpr std::array<EnumName<LoopWeights>, 4> enum_names(LoopWeights) {
+  return {{{LoopWeights::chi2, "chi2"},
+           {LoopWeights::lap_line, "lap-line"},
+           {LoopWeights::both, "both"},
+           {LoopWeights::uniform, "uniform"}}};
 }
 
 /// Graph induction (S. Datta et al., section V-A).
 struct InductionOptions {
-  Initialisation init = Initialisation::chi2;  ///< weights of the candidates
-  double odometry_weight = 1.0;                ///< affinity of odometry, > 0
-  double loop_weight = 1.0;                    ///< largest affinity of a candidate, > 0
-  CurveEvidenceOptions curve;                  ///< for lap_line and both
+  LoopWeights weights = LoopWeights::chi2;  ///< of the candidates
+  double odometry_weight = 1.0;             ///< affinity of odometry, > 0
+  double loop_weight = 1.0;                 ///< largest affinity of a candidate, > 0
+  CurveEvidenceOptions curve;               ///< for lap_line and both
 
   void validate() const;
 };
@@ -46,11 +46,10 @@ struct InducedGraph {
 
 /// Odometry gets odometry_weight, candidates a weight in (0, loop_weight].
 /// A candidate whose weight underflows to 0 has no edge. O(m log n), and the cost of
-/// curve_evidence() where it is used; only that uses `threads` and `progress`.
+/// curve_evidence() where it is used; only that uses `run`.
 /// @throws InvalidArgument, Cancelled
 template <class Pose>
 InducedGraph induce(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                    const InductionOptions& options = {}, int threads = 0,
-                    const ProgressCallback& progress = {});
+                    const InductionOptions& options = {}, const RunContext& run = {});
 
 }  // namespace isotherm::slam

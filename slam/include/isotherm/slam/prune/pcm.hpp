@@ -2,19 +2,25 @@
 
 #include <concepts>
 #include <cstdint>
+#include <string_view>
 #include <type_traits>
 
 #include "isotherm/base/options.hpp"
-#include "isotherm/base/progress.hpp"
+#include "isotherm/base/run_context.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm/spectral/edges/edge_verdicts.hpp"
 
 namespace isotherm::slam {
 
+struct PruneResult;  // prune.hpp
+
 /// Pairwise consistent measurement set maximization: J. Mangelson, D. Dominic, R.
 /// Eustice, R. Vasudevan, "Pairwise Consistent Measurement Set Maximization for
 /// Robust Multi-Robot Map Merging", ICRA 2018.
 struct PcmOptions {
+  static std::string_view method() { return "pcm"; }
+  static std::string_view title() { return "Pairwise consistent measurement"; }
+
   /// Probability with which a correct loop passes the check against odometry; in
   /// (0, 1].
   double pcm_odometry_confidence = 0.99;
@@ -32,11 +38,11 @@ template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, PcmOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("pcm_odometry_confidence", options.pcm_odometry_confidence,
-        "probability that a correct loop agrees with odometry; 1: no such check (pcm)");
+        "probability that a correct loop agrees with odometry; 1: no such check");
   visit("pcm_pair_confidence", options.pcm_pair_confidence,
-        "probability that two correct loops agree (pcm)");
+        "probability that two correct loops agree");
   visit("pcm_clique_budget", options.pcm_clique_budget,
-        "branches of the exact clique search before the best so far counts (pcm)");
+        "branches of the exact clique search before the best so far counts");
 }
 
 struct PcmResult {
@@ -57,6 +63,15 @@ struct PcmResult {
 /// @throws InvalidArgument, Cancelled
 template <class Pose>
 PcmResult pcm(const PoseGraph<Pose>& graph, const EdgeRoles& roles, const PcmOptions& options = {},
-              const ProgressCallback& progress = {});
+              const RunContext& run = {});
+
+namespace detail {
+
+/// The door of the method's room, through which prune() comes.
+template <class Pose>
+PruneResult prune_by(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                     const PcmOptions& options, const RunContext& run);
+
+}  // namespace detail
 
 }  // namespace isotherm::slam

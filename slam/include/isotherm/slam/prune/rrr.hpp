@@ -1,20 +1,26 @@
 #pragma once
 
 #include <concepts>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
 #include "isotherm/base/options.hpp"
-#include "isotherm/base/progress.hpp"
+#include "isotherm/base/run_context.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm/slam/optimize/initialize.hpp"
 #include "isotherm/spectral/edges/edge_verdicts.hpp"
 
 namespace isotherm::slam {
 
+struct PruneResult;  // prune.hpp
+
 /// Realizing, reversing, recovering: Y. Latif, C. Cadena, J. Neira, "Robust loop
 /// closing over time for pose graph SLAM", IJRR 32(14), 2013.
 struct RrrOptions {
+  static std::string_view method() { return "rrr"; }
+  static std::string_view title() { return "Realizing, reversing, recovering"; }
+
   /// Loops are in one cluster if both their ends are at most this many poses
   /// apart, through neighbours if need be; > 0. The authors' program has 50.
   int rrr_cluster_gap = 50;
@@ -38,10 +44,11 @@ template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, RrrOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("rrr_cluster_gap", options.rrr_cluster_gap,
-        "poses between loops of one cluster, at both ends (rrr)");
-  visit("rrr_confidence", options.rrr_confidence, "probability of the chi-squared tests (rrr)");
-  visit("rrr_iterations", options.rrr_iterations, "steps an optimisation may take (rrr)");
-  visit("rrr_split", options.rrr_split, "let loops part from their cluster (rrr)");
+        "poses between loops of one cluster, at both ends");
+  visit("rrr_confidence", options.rrr_confidence, "probability of the chi-squared tests");
+  visit("rrr_iterations", options.rrr_iterations, "steps an optimisation may take");
+  visit("rrr_split", options.rrr_split, "let loops part from their cluster");
+  visit("initialization", options.initialization, "where every optimisation starts");
 }
 
 /// Clusters of candidates (positions in roles.candidates) whose two ends are close,
@@ -71,6 +78,15 @@ std::vector<std::vector<Index>> cluster_loops(const PoseGraph<Pose>& graph, cons
 /// @throws InvalidArgument, Cancelled
 template <class Pose>
 spectral::EdgeVerdicts rrr(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                           const RrrOptions& options = {}, const ProgressCallback& progress = {});
+                           const RrrOptions& options = {}, const RunContext& run = {});
+
+namespace detail {
+
+/// The door of the method's room, through which prune() comes.
+template <class Pose>
+PruneResult prune_by(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                     const RrrOptions& options, const RunContext& run);
+
+}  // namespace detail
 
 }  // namespace isotherm::slam

@@ -31,9 +31,10 @@ constexpr double kBridgeProbability = 0.95;  // of a loop of which only its span
 
 template <class Pose>
 Search<Pose>::Search(const ReducedGraph<Pose>& graph, const Pairs& pairs,
-                     const ConsensusOptions& options, bool may_widen)
+                     const ConsensusOptions& options, const RunContext& run, bool may_widen)
     : graph_(graph),
       options_(options),
+      run_(run),
       required_odds_(log_odds_of(1.0 - options.significance)),
       map_(graph.poses),
       estimate_(graph),
@@ -234,9 +235,9 @@ bool Search<Pose>::accept(const Batch& batch) {
 // Between the steps of a round, so that a stop is heeded soon.
 template <class Pose>
 void Search<Pose>::tell_progress() const {
-  if (!options_.progress) return;
+  if (!run_.progress) return;
   const auto done = static_cast<std::uint64_t>(accepted_count());
-  if (!options_.progress({"consensus", done, accepted_.size()})) throw Cancelled();
+  if (!run_.progress({"consensus", done, accepted_.size()})) throw Cancelled();
 }
 
 template <class Pose>

@@ -21,10 +21,10 @@ class Search {
   using Selection = std::vector<Index>;
   using Pairs = typename Calibration<Pose>::Pairs;
 
-  /// `pairs` are the loops near each other (near_pairs). All three must outlive this object.
+  /// `pairs` are the loops near each other (near_pairs). All four must outlive this object.
   /// Covariances are only tightened unless `may_widen`.
   Search(const ReducedGraph<Pose>& graph, const Pairs& pairs, const ConsensusOptions& options,
-         bool may_widen);
+         const RunContext& run, bool may_widen);
 
   /// Runs to the end.
   void run();
@@ -91,6 +91,7 @@ class Search {
 
   const ReducedGraph<Pose>& graph_;
   const ConsensusOptions& options_;
+  const RunContext& run_;
   double required_odds_;  // log odds from which a loop counts as proven
   MapVolume<Pose> map_;
   Estimate<Pose> estimate_;

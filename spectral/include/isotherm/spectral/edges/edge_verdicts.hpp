@@ -37,4 +37,7 @@ using EdgeVerdicts = std::vector<EdgeVerdict>;
 /// How many of `verdicts` equal `verdict`.
 std::int64_t count(const EdgeVerdicts& verdicts, Verdict verdict);
 
+/// Whether the edge stays: where it is not proven either way, as asked.
+bool stays(const EdgeVerdict& verdict, bool keep_ambiguous);
+
 }  // namespace isotherm::spectral

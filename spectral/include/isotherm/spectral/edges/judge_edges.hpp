@@ -116,6 +116,11 @@ struct JudgeEdgesResult {
 JudgeEdgesResult judge_edges(const WeightedGraph& graph, const JudgeEdgesOptions& options = {},
                              const Eigen::MatrixXd& positions = {});
 
+/// The graph without the edges that are pruned, nor, unless `keep_ambiguous`, those that are
+/// ambiguous. @throws InvalidArgument unless there is one verdict an edge, in order of id
+WeightedGraph apply_verdicts(const WeightedGraph& graph, const EdgeVerdicts& verdicts,
+                             bool keep_ambiguous = false);
+
 /// Jaccard index of the neighbourhoods of an edge's ends, the ends themselves
 /// left out: in [0, 1]; -1 if neither has any other neighbour. Ordered ends and
 /// weights do not matter, parallel edges count once. O(d_i log d_i + d_j log d_j).

@@ -1,0 +1,135 @@
+#include "verbs/prune_flags.hpp"
+
+#include <concepts>
+#include <type_traits>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "isotherm/base/error.hpp"
+
+namespace isotherm::apps {
+namespace {
+
+using namespace slam;
+
+// Options under a name, which belong to one method.
+struct Preset {
+  std::string name;
+  PruneOptions options;
+  std::string help;
+};
+
+const std::vector<Preset>& presets() {
+  static const std::vector<Preset> all = {
+      {"datta2016", slam::datta2016(), "heat as its paper states it"}};
+  return all;
+}
+
+const Preset& preset_of(const std::string& name) {
+  for (const auto& preset : presets()) {
+    if (preset.name == name) return preset;
+  }
+  throw InvalidArgument("preset", "there is none called '" + name + "'");
+}
+
+bool take(PruneOptions& options, std::string_view key, const Json& value) {
+  return std::visit([&](auto& own) { return detail::take_field(own, key, value); }, options);
+}
+
+// The names of the methods that have the option, checking that the value is of its type.
+std::vector<std::string> owners(std::string_view key, const Json& value) {
+  std::vector<std::string> names;
+  for (auto& method : prune_methods()) {
+    if (take(method, key, value)) names.emplace_back(method_name(method));
+  }
+  return names;
+}
+
+std::string names_of_methods(std::string_view separator) {
+  std::vector<std::string_view> names;
+  const auto methods = prune_methods();
+  for (const auto& method : methods) names.push_back(method_name(method));
+  return fmt::format("{}", fmt::join(names, separator));
+}
+
+}  // namespace
+
+void PruneFlags::add_to(CLI::App& verb) {
+  verb.add_option_function<std::string>(
+          "--method",
+          [this](const std::string& name) {
+            show_only(prune_method(name));
+            method_ = name;
+          },
+          "how false loop closures are found; with --help: what it can be told")
+      ->type_name(names_of_methods("|"))
+      ->default_str(std::string(method_name({})));
+  std::string described;
+  for (const auto& preset : presets()) described += preset.name + ": " + preset.help;
+  verb.add_option_function<std::string>(
+          "--preset",
+          [this](const std::string& name) {
+            show_only(preset_of(name).options);
+            preset_ = name;
+          },
+          described)
+      ->type_name("NAME");
+  for (const auto& method : prune_methods()) add_fields_of(verb, method);
+  verb.footer("Each method has options of its own: isotherm prune --method NAME --help");
+}
+
+void PruneFlags::add_fields_of(CLI::App& verb, const PruneOptions& method) {
+  const auto add = [&](std::string_view field, const auto& value, std::string_view help) {
+    std::string name(field);
+    if (fields_.contains(name)) return;  // another method has it too
+    const auto remember = [this, name](const auto& given) {
+      given_.emplace_back(name, detail::field_to_json(given));
+    };
+    fields_[name] = detail::add_field_flag(verb, field, value, help, remember)->group("");
+  };
+  std::visit([&add](const auto& own) { visit_fields(own, add); }, method);
+}
+
+void PruneFlags::show_only(const PruneOptions& method) {
+  for (const auto& [name, option] : fields_) option->group("");
+  const auto show = [&](std::string_view name, const auto& value, std::string_view help) {
+    CLI::Option* option = fields_.find(name)->second;
+    option->group(fmt::format("Method {}", method_name(method)));
+    option->description(std::string(help));
+    constexpr bool kSwitch = std::same_as<std::remove_cvref_t<decltype(value)>, bool>;
+    if constexpr (!kSwitch) option->default_str(detail::shown(value));
+  };
+  std::visit([&show](const auto& own) { visit_fields(own, show); }, method);
+}
+
+PruneOptions PruneFlags::start(const Json& config) const {
+  std::string name = method_;
+  if (name.empty() && config.contains("method")) {
+    detail::field_from_json("method", config["method"], name);
+  }
+  if (preset_.empty()) return name.empty() ? PruneOptions() : prune_method(name);
+  const auto& preset = preset_of(preset_);
+  if (!name.empty() && name != method_name(preset.options)) {
+    throw InvalidArgument("--preset", fmt::format("{} is of method {}, not of {}", preset_,
+                                                  method_name(preset.options), name));
+  }
+  return preset.options;
+}
+
+PruneOptions PruneFlags::resolve(const Json& config) const {
+  PruneOptions options = start(config);
+  for (const auto& [key, value] : config.items()) {
+    if (key == "method" || take(options, key, value)) continue;
+    if (owners(key, value).empty()) throw InvalidArgument(key, "is not an option of this command");
+  }
+  for (const auto& [name, value] : given_) {
+    if (take(options, name, value)) continue;
+    throw InvalidArgument(detail::flag_name(name),
+                          fmt::format("is an option of {}, not of method {}",
+                                      fmt::join(owners(name, value), ", "), method_name(options)));
+  }
+  return options;
+}
+
+}  // namespace isotherm::apps

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "isotherm/base/progress.hpp"
+
+namespace isotherm {
+
+/// How a computation runs, apart from what it computes.
+struct RunContext {
+  int threads = 0;  ///< >= 0; 0: all cores; results do not depend on it
+  ProgressCallback progress = {};
+};
+
+}  // namespace isotherm
