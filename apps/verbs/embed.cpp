@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -106,30 +107,35 @@ struct EmbedVerb : OptionVerb<EmbedOptions> {
     const auto file = read_graph(input, {.strict = flags.strict});
     for (const auto& diagnostic : file.report.diagnostics) warn(flags, to_string(diagnostic));
     const Laplacian laplacian(file.graph, options.laplacian);
+    const Index available = laplacian.size() - laplacian.components().count;
+    if (available < options.dimensions) {
+      warn(flags, fmt::format("the graph has only {} coordinates", available));
+    }
     EigenOptions eigen_options;
-    const auto wanted = options.dimensions + laplacian.components().count;
-    eigen_options.count = static_cast<Index>(std::min<std::int64_t>(wanted, laplacian.size()));
+    eigen_options.count = static_cast<Index>(
+        std::clamp<std::int64_t>(options.dimensions, 1, std::max<Index>(1, available)));
+    eigen_options.null_vectors = false;
     eigen_options.progress = progress_line(flags);
     const auto eigen = smallest_eigenpairs(laplacian, eigen_options);
     const auto rows = coordinates(eigen, options);
-    if (eigen.count() == eigen_options.count && rows.cols() < options.dimensions) {
-      warn(flags, fmt::format("the graph has only {} coordinates", rows.cols()));
-    }
-    report(eigen);
+    report(eigen, laplacian.components().count);
     OutputFile out(output);
     out.write(output.ends_with(".npy") ? npy_text(rows) : csv_text(rows, file.ids));
     out.commit();
-    write_json(flags.json, to_json(eigen));
+    write_json(flags.json, to_json(eigen, laplacian.components().count));
     return eigen.status == EigenStatus::converged ? kOk : kNotConverged;
   }
 
-  Json to_json(const EigenDecomposition& eigen) const {
-    const std::vector<double> values(eigen.values.begin(), eigen.values.end());
-    const std::vector<double> bounds(eigen.bounds.begin(), eigen.bounds.end());
+  // Null eigenvalues come first, one a component, without being computed.
+  Json to_json(const EigenDecomposition& eigen, Index components) const {
+    std::vector<double> values(static_cast<std::size_t>(components), 0.0);
+    std::vector<double> bounds = values;
+    values.insert(values.end(), eigen.values.begin(), eigen.values.end());
+    bounds.insert(bounds.end(), eigen.bounds.begin(), eigen.bounds.end());
     return {{"schema", "isotherm.embed/1"},
             {"method", enum_name(options.method)},
             {"vertices", eigen.size()},
-            {"components", eigen.null_count},
+            {"components", components},
             {"solver", enum_name(eigen.method)},
             {"converged", eigen.status == EigenStatus::converged},
             {"eigenvalues", values},
@@ -140,10 +146,10 @@ struct EmbedVerb : OptionVerb<EmbedOptions> {
             {"options", options_to_json(options)}};
   }
 
-  void report(const EigenDecomposition& eigen) const {
+  void report(const EigenDecomposition& eigen, Index components) const {
     say(flags, fmt::format("{}: {} vertices, {} components, {} eigenpairs by {}, {:.2f} s{}",
-                           enum_name(options.method), eigen.size(), eigen.null_count, eigen.count(),
-                           enum_name(eigen.method), eigen.seconds,
+                           enum_name(options.method), eigen.size(), components,
+                           components + eigen.count(), enum_name(eigen.method), eigen.seconds,
                            eigen.status == EigenStatus::converged ? "" : "; not converged"));
   }
 };

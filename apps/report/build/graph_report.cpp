@@ -14,19 +14,15 @@ namespace {
 
 using namespace spectral;
 
-constexpr Index kMostParts = 200;  // whose null vectors are worth carrying along
-
-// Two coordinates a vertex; those that a graph in too many parts does not have are 0.
+// Two coordinates a vertex; those that a graph with too few edges does not have are 0.
 Eigen::MatrixXd coordinates(const WeightedGraph& graph, const ProgressCallback& progress) {
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(graph.vertex_count(), 2);
   const Laplacian laplacian(graph);
-  const Index parts = laplacian.components().count;
-  if (graph.vertex_count() == 0 || parts > kMostParts) return rows;
-  const auto eigen =
-      smallest_eigenpairs(laplacian, {.count = std::min<Index>(parts + 2, graph.vertex_count()),
-                                      .tolerance = 1e-8,
-                                      .check_inertia = false,
-                                      .progress = progress});
+  const auto eigen = smallest_eigenpairs(laplacian, {.count = 2,
+                                                     .null_vectors = false,
+                                                     .tolerance = 1e-8,
+                                                     .check_inertia = false,
+                                                     .progress = progress});
   const Eigen::MatrixXd found = commute_time_embedding(eigen);
   const Eigen::Index columns = std::min<Eigen::Index>(2, found.cols());
   rows.leftCols(columns) = found.leftCols(columns);

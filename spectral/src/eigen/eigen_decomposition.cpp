@@ -108,7 +108,7 @@ struct Search {
 
 /// Iterates for the pairs that are not null, then counts, and looks again in
 /// the complement of what was found while the count says that some are missing.
-Search iterate(const Laplacian& laplacian, Index count, Index nulls, const EigenOptions& options) {
+Search iterate(const Laplacian& laplacian, Index count, const EigenOptions& options) {
   detail::PseudoInversePairs inverse(laplacian, options);
   Search search;
   search.pairs.vectors.resize(laplacian.size(), 0);
@@ -122,7 +122,8 @@ Search iterate(const Laplacian& laplacian, Index count, Index nulls, const Eigen
     const double bound = inertia_bound(laplacian, search.pairs);
     if (bound <= 0.0) continue;
     search.inertia_count = count_below(laplacian, bound);
-    const std::int64_t missed = search.inertia_count - nulls - found_below(search.pairs, bound);
+    const std::int64_t missed =
+        search.inertia_count - laplacian.components().count - found_below(search.pairs, bound);
     search.complete = missed <= 0;
     missing = std::max(missing, missed);
   }
@@ -168,10 +169,11 @@ void assess(const Laplacian& laplacian, double tolerance, EigenDecomposition& re
   if (!close || !positive) result.status = EigenStatus::not_converged;
 }
 
-EigenMethod choose(const EigenOptions& options, Index size, Index count) {
-  if (count > size / 3) return EigenMethod::dense;
+EigenMethod choose(const EigenOptions& options, const Laplacian& laplacian, Index wanted) {
+  const Index complement = laplacian.size() - laplacian.components().count;
+  if (wanted > complement / 3) return EigenMethod::dense;
   if (options.method != EigenMethod::automatic) return options.method;
-  return size <= options.dense_limit ? EigenMethod::dense : EigenMethod::shift_invert;
+  return laplacian.size() <= options.dense_limit ? EigenMethod::dense : EigenMethod::shift_invert;
 }
 
 }  // namespace
@@ -186,25 +188,25 @@ void EigenOptions::validate() const {
 EigenDecomposition smallest_eigenpairs(const Laplacian& laplacian, const EigenOptions& options) {
   options.validate();
   const auto start = std::chrono::steady_clock::now();
-  const Index size = laplacian.size();
-  const Index count = std::min(options.count, size);
-  const Index nulls = std::min(count, laplacian.components().count);
+  const Index components = laplacian.components().count;
+  const Index nulls = options.null_vectors ? std::min(options.count, components) : 0;
+  const Index wanted = std::min(options.count - nulls, laplacian.size() - components);
 
   EigenDecomposition result;
   result.kind = laplacian.kind();
   result.norm = laplacian.norm_bound();
   result.null_count = nulls;
-  result.method = choose(options, size, count);
+  result.method = choose(options, laplacian, wanted);
   Search search;
-  search.pairs.vectors.resize(size, 0);
-  if (count > nulls && result.method == EigenMethod::dense) {
-    search.pairs = merge(laplacian, search.pairs, dense_vectors(laplacian, count - nulls), count);
-  } else if (count > nulls) {
-    search = iterate(laplacian, count - nulls, nulls, options);
+  search.pairs.vectors.resize(laplacian.size(), 0);
+  if (wanted > 0 && result.method == EigenMethod::dense) {
+    search.pairs = merge(laplacian, search.pairs, dense_vectors(laplacian, wanted), wanted);
+  } else if (wanted > 0) {
+    search = iterate(laplacian, wanted, options);
   }
   join(laplacian, search.pairs, result);
   result.inertia_count = search.inertia_count;
-  if (result.count() < count) result.status = EigenStatus::not_converged;
+  if (result.count() < nulls + wanted) result.status = EigenStatus::not_converged;
   if (!search.complete) result.status = EigenStatus::missed_pairs;
   for (Index k = 0; k < result.count(); ++k) fix_sign(result.vectors.col(k));
   assess(laplacian, options.tolerance, result);

@@ -92,6 +92,28 @@ TEST(EigenDecomposition, CopiesOfAGraphMultiplyItsSpectrum) {
   }
 }
 
+TEST(EigenDecomposition, ManyComponentsNeedNoNullVectors) {
+  std::vector<WeightedEdge> edges;
+  for (Index v = 0; v < 40000; v += 4) {
+    edges.push_back({v, v + 1, 1.0});
+    edges.push_back({v + 2, v + 3, v == 0 ? 0.5 : 2.0});
+  }
+  const Laplacian laplacian(WeightedGraph(40000, edges));
+  const auto eigen = smallest_eigenpairs(laplacian, {.count = 6, .null_vectors = false});
+  EXPECT_EQ(eigen.status, EigenStatus::converged);
+  EXPECT_EQ(eigen.method, EigenMethod::shift_invert);
+  EXPECT_EQ(eigen.null_count, 0);
+  ASSERT_EQ(eigen.count(), 6);
+  for (Index k = 0; k < 6; ++k) EXPECT_NEAR(eigen.values[k], k == 0 ? 1.0 : 2.0, 1e-11);
+  EXPECT_LE(eigen.orthogonality, 1e-9);
+  // All that are not null; none is left for the rest of the count.
+  const Laplacian small(disjoint_union(path_graph(3), path_graph(2)));
+  const auto all = smallest_eigenpairs(small, {.count = 9, .null_vectors = false});
+  ASSERT_EQ(all.count(), 3);
+  EXPECT_NEAR(all.values[0], 1.0, 1e-14);
+  EXPECT_NEAR(all.values[2], 3.0, 1e-14);
+}
+
 TEST(EigenDecomposition, MethodsAgreeOnWeightedGraphs) {
   Random random(21);
   for (const auto kind : {LaplacianKind::combinatorial, LaplacianKind::normalised}) {

@@ -28,7 +28,10 @@ struct EigenOptions {
   /// Number of smallest eigenpairs, null ones included; >= 1. Fewer come back
   /// if the graph has fewer vertices, or some have not converged.
   Index count = 10;
-  /// More than a third of all pairs is always found by the dense solver.
+  /// Give the null pairs, one a component, and count them; without them memory does not grow
+  /// with the components. Only heat's embedding and kernel need them.
+  bool null_vectors = true;
+  /// More than a third of the pairs that are not null is always found by the dense solver.
   EigenMethod method = EigenMethod::automatic;
   /// `automatic` is dense up to this many vertices.
   Index dense_limit = 600;
@@ -50,6 +53,7 @@ template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, EigenOptions>
 void visit_fields(Options& options, Visitor&& visitor) {
   visitor("count", options.count, "number of smallest eigenpairs, null ones included");
+  visitor("null_vectors", options.null_vectors, "give the null eigenvectors, and count them");
   visitor("eigen_solver", options.method, "how eigenpairs are computed");
   visitor("dense_limit", options.dense_limit, "vertices up to which the dense solver is used");
   visitor("eigen_tolerance", options.tolerance, "largest residual, relative to the norm");
