@@ -42,16 +42,14 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
 
   int run() {
     if (resolve_or_dump()) return kOk;
-    options.threads = flags.threads;
-    options.seed = flags.seed;
-    options.progress = progress_line(flags);
-    const auto file = read_input();
+    const RunContext context{flags.threads, progress_line(flags), flags.seed};
+    const auto file = read_input(context);
     for (const auto& diagnostic : file.report.diagnostics) warn(flags, to_string(diagnostic));
-    auto result = judge_edges(file.graph, options, file.points);
+    auto result = judge_edges(file.graph, options, file.points, context);
     const auto left = apply_verdicts(file.graph, result.verdicts, keep_ambiguous);
     if (explain.wanted()) {
       const EdgesRun run{file_title(input), options, file.ids, file.points};
-      write_report(explain, graph_report(file.graph, left, result, run));
+      write_report(explain, graph_report(file.graph, left, result, run, context));
     }
     name_vertices(result.verdicts, file.ids);
     report(result);
@@ -62,18 +60,16 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
   }
 
   // The graph of the file, or of the points in it.
-  Input read_input() const {
+  Input read_input(const RunContext& context) const {
     if (!neighbours && !radius) {
       auto file = read_graph(input, {.strict = flags.strict});
       auto points = positions.empty() ? Eigen::MatrixXd() : positions_of(file.ids);
       return {std::move(file), std::move(points)};
     }
     auto cloud = geometry::read_points(input);
-    const geometry::NeighbourGraphOptions how = {.threads = flags.threads,
-                                                 .progress = progress_line(flags)};
     Input file;
-    file.graph = neighbours ? geometry::nearest_neighbour_graph(cloud.points, *neighbours, how)
-                            : geometry::radius_graph(cloud.points, *radius, how);
+    file.graph = neighbours ? geometry::nearest_neighbour_graph(cloud.points, *neighbours, context)
+                            : geometry::radius_graph(cloud.points, *radius, context);
     file.ids.resize(file.graph.vertex_count());
     std::iota(file.ids.begin(), file.ids.end(), 0);
     file.report = std::move(cloud.report);

@@ -32,7 +32,8 @@ struct OptimizeVerb : OptionVerb<OptimizeOptions> {
   template <class Pose>
   int run_on(PoseGraph<Pose>& graph, const PoseGraphFile& file) {
     const auto roles = trusted.empty() ? edge_roles(graph) : read_trusted_edges(trusted, graph);
-    const auto result = optimize(graph, roles, options, {flags.threads, progress_line(flags)});
+    const auto result =
+        optimize(graph, roles, options, {flags.threads, progress_line(flags), flags.seed});
     report(result);
     graph.poses = result.poses;
     if (output.ends_with(".tum")) {

@@ -110,7 +110,7 @@ struct PruneVerb {
   // `graph` is the one in `file`.
   template <class Pose>
   void run_on(PoseGraph<Pose>& graph, const PoseGraphFile& file) {
-    const RunContext context{flags.threads, progress_line(flags)};
+    const RunContext context{flags.threads, progress_line(flags), flags.seed};
     const auto roles = trusted.empty() ? edge_roles(graph) : read_trusted_edges(trusted, graph);
     auto result = prune_and_optimize(graph, roles, options, context);
     report(result.decisions);

@@ -30,7 +30,7 @@ Eigen::MatrixXd coordinates(const WeightedGraph& graph, const ProgressCallback& 
 }
 
 void add_layouts(Report& report, const WeightedGraph& graph, const WeightedGraph& left,
-                 const EdgesRun& run) {
+                 const EdgesRun& run, const ProgressCallback& progress) {
   const auto dimension = run.points.rows();
   if (dimension == 2 || dimension == 3) {
     report.dimension = static_cast<int>(dimension);
@@ -38,7 +38,6 @@ void add_layouts(Report& report, const WeightedGraph& graph, const WeightedGraph
         report_layout("points", "The points, where they are", run.points.transpose()));
     return;
   }
-  const auto& progress = run.options.progress;
   report.layouts.push_back(report_layout("before", "Before: commute-time coordinates, all edges",
                                          coordinates(graph, progress)));
   report.layouts.push_back(report_layout("after", "After: commute-time coordinates, kept edges",
@@ -68,18 +67,19 @@ std::string words_of_threshold(const JudgeEdgesResult& result) {
 }  // namespace
 
 Report graph_report(const WeightedGraph& graph, const WeightedGraph& left,
-                    const JudgeEdgesResult& result, const EdgesRun& run) {
+                    const JudgeEdgesResult& result, const EdgesRun& run,
+                    const RunContext& context) {
   Report report;
   report.kind = ReportKind::graph;
   report.title = run.title;
   report.nouns = {"vertex", "vertices", "edge", "edges", ""};
   report.options = options_to_json(run.options);
   report.node_ids = run.ids;
-  add_layouts(report, graph, left, run);
+  add_layouts(report, graph, left, run, context.progress);
   add_candidates(report, graph, result.verdicts);
   const SpectralReportOptions options{.scales = scales_around(run.options.scale),
-                                      .threads = run.options.threads,
-                                      .progress = run.options.progress};
+                                      .threads = context.threads,
+                                      .progress = context.progress};
   report.spectrum = report_spectrum(graph, options);
   report.heat = report_heat(graph, edge_pairs(graph), report.candidates.verdict, options);
   report.truth_note = "A plain graph has no true positions to compare with.";

@@ -25,6 +25,7 @@ struct EdgesRun {
 /// with all edges and after with those that are left.
 /// @throws NumericalError, Cancelled
 Report graph_report(const spectral::WeightedGraph& graph, const spectral::WeightedGraph& left,
-                    const spectral::JudgeEdgesResult& result, const EdgesRun& run);
+                    const spectral::JudgeEdgesResult& result, const EdgesRun& run,
+                    const RunContext& context);
 
 }  // namespace isotherm::apps

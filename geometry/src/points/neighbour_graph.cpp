@@ -50,16 +50,15 @@ void check_points(const Eigen::MatrixXd& points) {
 /// The graph of the pairs that `find(tree, point)` gives, in either order, a list a
 /// point.
 template <class Find>
-WeightedGraph join(const Eigen::MatrixXd& points, const NeighbourGraphOptions& options,
-                   const Find& find) {
-  options.validate();
+WeightedGraph join(const Eigen::MatrixXd& points, const RunContext& run, const Find& find) {
+  if (run.threads < 0) throw InvalidArgument("threads", "must not be negative");
   check_points(points);
   const auto count = static_cast<Index>(points.cols());
   if (count == 0 || points.rows() == 0) return {count, {}};
   const Columns columns{points};
   const Tree tree(static_cast<int>(points.rows()), columns);
   std::vector<std::vector<Index>> found(count);
-  parallel_for(count, options.threads, options.progress, "neighbours",
+  parallel_for(count, run.threads, run.progress, "neighbours",
                [&](std::int64_t point) { found[point] = find(tree, static_cast<Index>(point)); });
   std::vector<std::pair<Index, Index>> pairs;
   for (Index point = 0; point < count; ++point) {
@@ -79,19 +78,15 @@ WeightedGraph join(const Eigen::MatrixXd& points, const NeighbourGraphOptions& o
 
 }  // namespace
 
-void NeighbourGraphOptions::validate() const {
-  if (threads < 0) throw InvalidArgument("threads", "must not be negative");
-}
-
 WeightedGraph nearest_neighbour_graph(const Eigen::MatrixXd& points, int neighbours,
-                                      const NeighbourGraphOptions& options) {
+                                      const RunContext& run) {
   if (neighbours < 1) throw InvalidArgument("neighbours", "must be at least 1");
   // The point itself is found too, and ties at the last place are to be broken by
   // number, not by where they stand in the tree.
   constexpr Eigen::Index kTies = 16;
   const Eigen::Index wanted = std::min<Eigen::Index>(neighbours, points.cols() - 1);
   const Eigen::Index asked = std::min(wanted + 1 + kTies, points.cols());
-  return join(points, options, [&](const Tree& tree, Index point) {
+  return join(points, run, [&](const Tree& tree, Index point) {
     std::vector<Index> indices(asked);
     std::vector<double> squares(asked);
     tree.knnSearch(points.col(point).data(), static_cast<std::size_t>(asked), indices.data(),
@@ -107,12 +102,11 @@ WeightedGraph nearest_neighbour_graph(const Eigen::MatrixXd& points, int neighbo
   });
 }
 
-WeightedGraph radius_graph(const Eigen::MatrixXd& points, double radius,
-                           const NeighbourGraphOptions& options) {
+WeightedGraph radius_graph(const Eigen::MatrixXd& points, double radius, const RunContext& run) {
   if (!(std::isfinite(radius) && radius > 0.0)) {
     throw InvalidArgument("radius", "must be finite and positive");
   }
-  return join(points, options, [&](const Tree& tree, Index point) {
+  return join(points, run, [&](const Tree& tree, Index point) {
     std::vector<std::pair<Index, double>> matches;
     // The search leaves out points at exactly its radius.
     const double square = std::nextafter(radius * radius, std::numeric_limits<double>::infinity());

@@ -47,14 +47,15 @@ NeighbourCounts count_neighbours(const WeightedGraph& graph, Index edge) {
   return {common.size(), first.size() + second.size() - common.size()};
 }
 
-std::vector<double> affinity_scores(const WeightedGraph& graph, const JudgeEdgesOptions& options) {
+std::vector<double> affinity_scores(const WeightedGraph& graph, const JudgeEdgesOptions& options,
+                                    const RunContext& run) {
   // Affinities that the tolerance cannot tell from 0 speak of a bridge.
   constexpr double kNoise = 4.0;
   std::vector<Index> edges(graph.edges().size());
   std::iota(edges.begin(), edges.end(), 0);
   const auto affinities = leave_one_out_affinities(
       graph, edges, std::vector<double>{options.scale},
-      {.tolerance = options.tolerance, .threads = options.threads, .progress = options.progress});
+      {.tolerance = options.tolerance, .threads = run.threads, .progress = run.progress});
   std::vector<double> scores;
   for (const auto& affinity : affinities.values) {
     const bool measurable = affinity.value > kNoise * affinity.width();
@@ -89,13 +90,14 @@ std::vector<double> common_neighbour_scores(const WeightedGraph& graph) {
   return scores;
 }
 
-std::vector<double> scores_of(const WeightedGraph& graph, const JudgeEdgesOptions& options) {
+std::vector<double> scores_of(const WeightedGraph& graph, const JudgeEdgesOptions& options,
+                              const RunContext& run) {
   switch (options.method) {
     case EdgeScore::heat:
     case EdgeScore::rank:
       break;
     case EdgeScore::affinity:
-      return affinity_scores(graph, options);
+      return affinity_scores(graph, options, run);
     case EdgeScore::resistance:
       return resistance_scores(graph);
     case EdgeScore::jaccard:
@@ -137,8 +139,9 @@ JudgeEdgesResult judge_all(const WeightedGraph& graph, const std::vector<double>
   return result;
 }
 
-JudgeEdgesResult judge_by_threshold(const WeightedGraph& graph, const JudgeEdgesOptions& options) {
-  const auto scores = scores_of(graph, options);
+JudgeEdgesResult judge_by_threshold(const WeightedGraph& graph, const JudgeEdgesOptions& options,
+                                    const RunContext& run) {
+  const auto scores = scores_of(graph, options, run);
   std::vector<double> known;
   for (std::size_t e = 0; e < scores.size(); ++e) {
     const auto& edge = graph.edges()[e];
@@ -156,13 +159,14 @@ Threshold decided_threshold(double value, const std::vector<double>& truth) {
   return threshold;
 }
 
-JudgeEdgesResult judge_by_heat(const WeightedGraph& graph, const JudgeEdgesOptions& options) {
+JudgeEdgesResult judge_by_heat(const WeightedGraph& graph, const JudgeEdgesOptions& options,
+                               const RunContext& run) {
   auto heat = detail::anneal_heat(graph, {.rounds = options.rounds,
                                           .chance = options.chance,
                                           .control = options.control,
-                                          .seed = options.seed,
-                                          .threads = options.threads,
-                                          .progress = options.progress});
+                                          .seed = run.seed,
+                                          .threads = run.threads,
+                                          .progress = run.progress});
   std::vector<double> judged;
   for (std::size_t e = 0; e < heat.scores.size(); ++e) {
     const auto& edge = graph.edges()[e];
@@ -182,13 +186,13 @@ void check_positions(const WeightedGraph& graph, const Eigen::MatrixXd& position
 }
 
 JudgeEdgesResult judge_by_rank(const WeightedGraph& graph, const JudgeEdgesOptions& options,
-                               const Eigen::MatrixXd& positions) {
+                               const Eigen::MatrixXd& positions, const RunContext& run) {
   check_positions(graph, positions);
   const auto ranks_of = [&](const std::vector<VertexPair>& pairs) {
-    return detail::pair_ranks(positions, pairs, options.threads, options.progress);
+    return detail::pair_ranks(positions, pairs, run.threads, run.progress);
   };
   const auto scores = ranks_of(edge_pairs(graph));
-  const auto nulls = ranks_of(detail::control_pairs(graph, options.control, options.seed));
+  const auto nulls = ranks_of(detail::control_pairs(graph, options.control, run.seed));
   const auto groups = detail::separate_groups(scores, nulls);
   const double threshold = detail::rejection_threshold(scores, groups, options.chance);
   return judge_all(graph, scores, decided_threshold(threshold, groups.truth),
@@ -205,7 +209,6 @@ void JudgeEdgesOptions::validate() const {
   }
   if (!std::isfinite(konst)) throw InvalidArgument("konst", "must be finite");
   if (!(tolerance > 0.0)) throw InvalidArgument("tolerance", "must be positive");
-  if (threads < 0) throw InvalidArgument("threads", "must not be negative");
 }
 
 double jaccard_index(const WeightedGraph& graph, Index edge) {
@@ -221,12 +224,13 @@ WeightedGraph apply_verdicts(const WeightedGraph& graph, const EdgeVerdicts& ver
 }
 
 JudgeEdgesResult judge_edges(const WeightedGraph& graph, const JudgeEdgesOptions& options,
-                             const Eigen::MatrixXd& positions) {
+                             const Eigen::MatrixXd& positions, const RunContext& run) {
   options.validate();
+  if (run.threads < 0) throw InvalidArgument("threads", "must not be negative");
   const auto start = std::chrono::steady_clock::now();
-  auto result = options.method == EdgeScore::heat   ? judge_by_heat(graph, options)
-                : options.method == EdgeScore::rank ? judge_by_rank(graph, options, positions)
-                                                    : judge_by_threshold(graph, options);
+  auto result = options.method == EdgeScore::heat   ? judge_by_heat(graph, options, run)
+                : options.method == EdgeScore::rank ? judge_by_rank(graph, options, positions, run)
+                                                    : judge_by_threshold(graph, options, run);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

@@ -160,8 +160,8 @@ TEST(JudgeEdges, NearControlFindsShortCircuitsSideBySide) {
 TEST(JudgeEdges, HeatDependsOnTheSeedAndNothingElse) {
   Random random(85);
   const auto graph = with_false_edges(300, 0.1, 50, random);
-  const auto first = judge_edges(graph, {.seed = 7, .threads = 1});
-  const auto second = judge_edges(graph, {.seed = 7, .threads = 3});
+  const auto first = judge_edges(graph, {}, {}, {.threads = 1, .seed = 7});
+  const auto second = judge_edges(graph, {}, {}, {.threads = 3, .seed = 7});
   for (std::size_t e = 0; e < first.verdicts.size(); ++e) {
     EXPECT_EQ(first.verdicts[e].score, second.verdicts[e].score);
     EXPECT_EQ(first.verdicts[e].verdict, second.verdicts[e].verdict);
@@ -235,6 +235,20 @@ TEST(JudgeEdges, RankTakesDegenerateInputAndNeedsPositions) {
   EXPECT_THROW(judge_edges(graph, rank, heap.array() / 0.0), InvalidArgument);
 }
 
+TEST(ApplyVerdicts, LeavesOutPrunedAndByDefaultAmbiguousEdges) {
+  const WeightedGraph graph(3, {{0, 1, 1.0}, {1, 2, 2.0}, {2, 0, 3.0}});
+  EdgeVerdicts verdicts(3);
+  verdicts[0].verdict = Verdict::prune;
+  verdicts[2].verdict = Verdict::ambiguous;
+  const auto kept = apply_verdicts(graph, verdicts);
+  ASSERT_EQ(kept.edge_count(), 1);
+  EXPECT_EQ(kept.edge(0).weight, 2.0);
+  EXPECT_EQ(kept.vertex_count(), 3);
+  EXPECT_EQ(apply_verdicts(graph, verdicts, true).edge_count(), 2);
+  verdicts.pop_back();
+  EXPECT_THROW(apply_verdicts(graph, verdicts), InvalidArgument);
+}
+
 TEST(JudgeEdges, BridgesAreAmbiguousAndSelfLoopsKept) {
   const WeightedGraph graph(
       7, {{0, 1, 1.0}, {1, 2, 1.0}, {2, 0, 1.0}, {2, 3, 1.0}, {4, 4, 1.0}, {5, 6, 2.0}});
@@ -267,7 +281,7 @@ TEST(JudgeEdges, EmptyGraphAndBadOptions) {
   EXPECT_THROW(judge_edges(path_graph(3), {.scale = 0.0}), InvalidArgument);
   EXPECT_THROW(judge_edges(path_graph(3), {.konst = std::nan("")}), InvalidArgument);
   EXPECT_THROW(judge_edges(path_graph(3), {.tolerance = 0.0}), InvalidArgument);
-  EXPECT_THROW(judge_edges(path_graph(3), {.threads = -1}), InvalidArgument);
+  EXPECT_THROW(judge_edges(path_graph(3), {}, {}, {.threads = -1}), InvalidArgument);
 }
 
 }  // namespace

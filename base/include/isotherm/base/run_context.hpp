@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "isotherm/base/progress.hpp"
 
 namespace isotherm {
@@ -8,6 +10,7 @@ namespace isotherm {
 struct RunContext {
   int threads = 0;  ///< >= 0; 0: all cores; results do not depend on it
   ProgressCallback progress = {};
+  std::uint64_t seed = 0;  ///< of the random choices, where some are made
 };
 
 }  // namespace isotherm

@@ -214,9 +214,10 @@ std::vector<bool> trusted_pairs(const RangeProblem& problem, const LocalizeOptio
       problem.nodes <= options.patch_size) {
     return trusted;
   }
+  constexpr std::uint64_t kSeed = 1;  // of the random pairs that ranges are compared with
   const auto judged = spectral::judge_edges(
-      problem.pair_graph,
-      {.chance = options.heat_chance, .threads = options.threads, .progress = options.progress});
+      problem.pair_graph, {.chance = options.heat_chance}, {},
+      {.threads = options.threads, .progress = options.progress, .seed = kSeed});
   for (const auto& verdict : judged.verdicts) {
     trusted[verdict.edge] = verdict.verdict != spectral::Verdict::prune;
   }

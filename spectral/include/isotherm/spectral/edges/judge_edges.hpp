@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 
 #include "isotherm/base/options.hpp"
-#include "isotherm/base/progress.hpp"
+#include "isotherm/base/run_context.hpp"
 #include "isotherm/spectral/edges/edge_verdicts.hpp"
 #include "isotherm/spectral/edges/threshold.hpp"
 #include "isotherm/spectral/graph/weighted_graph.hpp"
@@ -65,9 +65,6 @@ struct JudgeEdgesOptions {
   /// Standard deviations above the mean, for the mean-sigma rule; finite.
   double konst = 1.0;
   double tolerance = 1e-9;  ///< affinity: of the heat kernel's entries, absolute, > 0
-  std::uint64_t seed = 1;   ///< heat, rank: of the random pairs that edges are compared with
-  int threads = 0;          ///< 0: all cores; results do not depend on it
-  ProgressCallback progress = {};
 
   /// @throws InvalidArgument naming the field that is out of range.
   void validate() const;
@@ -111,10 +108,12 @@ struct JudgeEdgesResult {
 /// counted from the end that has fewer of them: where vertices are sparse true edges are long, but
 /// do not reach past many. The probability is found as for heat, in one round; bridges and
 /// chains are judged like other edges. O(edges sqrt n) in the plane.
+///
+/// The seed is that of the random pairs of heat and rank.
 /// @throws InvalidArgument, also for rank unless there is a finite position for each vertex;
 ///   NumericalError, Cancelled
 JudgeEdgesResult judge_edges(const WeightedGraph& graph, const JudgeEdgesOptions& options = {},
-                             const Eigen::MatrixXd& positions = {});
+                             const Eigen::MatrixXd& positions = {}, const RunContext& run = {});
 
 /// The graph without the edges that are pruned, nor, unless `keep_ambiguous`, those that are
 /// ambiguous. @throws InvalidArgument unless there is one verdict an edge, in order of id
