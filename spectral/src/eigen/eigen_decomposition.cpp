@@ -17,6 +17,7 @@ namespace isotherm::spectral {
 namespace {
 
 constexpr int kMaxRounds = 4;  // searches for eigenpairs that the iteration missed
+constexpr int kLook = 8;       // pairs of one that does not know how many are missing
 
 struct Pairs {
   Eigen::VectorXd values;
@@ -106,19 +107,30 @@ struct Search {
   bool complete = true;
 };
 
-/// Iterates for the pairs that are not null, then counts, and looks again in
-/// the complement of what was found while the count says that some are missing.
+/// Iterates for the pairs that are not null, then counts, and looks again in the
+/// complement of what was found while the count says that some are missing; without a count,
+/// while smaller ones turn up there.
 Search iterate(const Laplacian& laplacian, Index count, const EigenOptions& options) {
   detail::PseudoInversePairs inverse(laplacian, options);
   Search search;
   search.pairs.vectors.resize(laplacian.size(), 0);
   std::int64_t missing = count;
+  double last = std::numeric_limits<double>::infinity();
+  const Index complement = laplacian.size() - laplacian.components().count;
   for (int round = 0; missing > 0 && round <= kMaxRounds; ++round) {
     const Index wanted = static_cast<Index>(std::min<std::int64_t>(missing, count));
     search.pairs =
         merge(laplacian, search.pairs, inverse.vectors(wanted, search.pairs.vectors), count);
     missing = count - search.pairs.values.size();
-    if (!options.check_inertia || search.pairs.values.size() == 0) continue;
+    if (search.pairs.values.size() == 0) continue;
+    if (!options.check_inertia) {
+      const double largest = search.pairs.values.maxCoeff();
+      const auto left = complement - search.pairs.values.size();  // a small rest needs no look
+      const bool look = largest < (1.0 - 1e-7) * last && left > 3 * kLook;
+      if (look) missing = std::max<std::int64_t>(missing, kLook);
+      last = largest;
+      continue;
+    }
     const double bound = inertia_bound(laplacian, search.pairs);
     if (bound <= 0.0) continue;
     search.inertia_count = count_below(laplacian, bound);

@@ -11,14 +11,17 @@
 namespace isotherm::spectral::detail {
 namespace {
 
-constexpr std::uint64_t kSeed = 20170509;  // any fixed start vector does
+constexpr std::uint64_t kSeed = 20170509;  // any fixed start vectors do
 constexpr double kRitzTolerance = 1e-13;   // on residuals, relative to the Ritz value
 constexpr Index kSmallestBasis = 24;
+// Spectra's tridiagonal solver fails for some where nearly all eigenvalues are equal.
+constexpr int kMostStarts = 5;
 
 /// The pseudo-inverse on the complement of `locked`, as Spectra asks for it.
 ///
-/// Null vectors get the eigenvalue -1. Where all others are equal (complete graphs) any start
-/// would else be an eigenvector, of which Spectra divides the rounding errors by their size.
+/// Null and locked vectors get the eigenvalue -1, not 0. Where all others are equal (complete
+/// graphs) any start would else be an eigenvector, of which Spectra divides the rounding errors
+/// by their size; and its tridiagonal solver may fail on rounding errors around 0.
 class DeflatedInverse {
  public:
   using Scalar = double;
@@ -32,14 +35,14 @@ class DeflatedInverse {
 
   void perform_op(const double* in, double* out) const {
     const Eigen::Map<const Eigen::VectorXd> x(in, rows());
-    Eigen::VectorXd rest = x;
-    solver_.remove_null_space(rest);
-    Eigen::Map<Eigen::VectorXd>(out, rows()) = scale_ * multiply(x) - (x - rest);
+    const Eigen::VectorXd rest = project(x);
+    Eigen::Map<Eigen::VectorXd>(out, rows()) = scale_ * multiply(rest) - (x - rest);
   }
 
   /// Makes the largest eigenvalue about 1: Spectra compares some numbers with constants.
   /// @returns false if nothing is left of the operator
   bool normalise(Eigen::VectorXd start) {
+    start = project(start);
     for (int step = 0; step < 3; ++step) {
       const Eigen::VectorXd next = multiply(start.normalized());
       if (!(next.norm() > 0.0)) return false;
@@ -53,8 +56,14 @@ class DeflatedInverse {
   Eigen::VectorXd multiply(const Eigen::VectorXd& x) const {
     ++solves_;
     if (progress_ && !progress_({"eigenpairs", solves_, 0})) throw Cancelled();
-    Eigen::VectorXd y = solver_.solve(x - locked_ * (locked_.transpose() * x).eval());
-    return y - locked_ * (locked_.transpose() * y).eval();
+    return project(solver_.solve(x));
+  }
+
+  /// Onto the complement of null and locked vectors.
+  Eigen::VectorXd project(Eigen::VectorXd x) const {
+    solver_.remove_null_space(x);
+    x -= locked_ * (locked_.transpose() * x).eval();
+    return x;
   }
 
   LaplacianSolver& solver_;
@@ -64,8 +73,7 @@ class DeflatedInverse {
   double scale_ = 1.0;
 };
 
-Eigen::VectorXd random_vector(Index size) {
-  Random random(kSeed);
+Eigen::VectorXd random_vector(Index size, Random& random) {
   Eigen::VectorXd vector(size);
   for (double& entry : vector) entry = random.uniform(-1.0, 1.0);
   return vector;
@@ -83,19 +91,22 @@ Eigen::MatrixXd PseudoInversePairs::vectors(Index count, const Eigen::MatrixXd& 
   const Index complement = size_ - null_count_ - static_cast<Index>(locked.cols());
   count = std::min(count, complement);
   DeflatedInverse inverse(solver_, locked, options_.progress, solves_);
-  const Eigen::VectorXd start = random_vector(size_);
-  if (count <= 0 || !inverse.normalise(start)) return Eigen::MatrixXd(size_, 0);
-  const Index basis =
-      std::max(std::min(complement, std::max(2 * count + 2, kSmallestBasis)), count + 1);
-  try {
-    Spectra::SymEigsSolver<DeflatedInverse> solver(inverse, count, basis);
-    solver.init(start.data());
-    solver.compute(Spectra::SortRule::LargestAlge, options_.max_restarts, kRitzTolerance);
-    return solver.eigenvectors();
-  } catch (const Error&) {
-    throw;
-  } catch (const std::runtime_error& error) {  // Spectra's
-    throw NumericalError("eigenpairs", error.what());
+  Random random(kSeed);
+  if (count <= 0 || !inverse.normalise(random_vector(size_, random))) {
+    return Eigen::MatrixXd(size_, 0);
+  }
+  const Index room = std::min(complement, std::max(2 * count + 2, kSmallestBasis));
+  for (int start = 0;; ++start) {
+    try {
+      Spectra::SymEigsSolver<DeflatedInverse> solver(inverse, count, std::max(room, count + 1));
+      solver.init(random_vector(size_, random).data());
+      solver.compute(Spectra::SortRule::LargestAlge, options_.max_restarts, kRitzTolerance);
+      return solver.eigenvectors();
+    } catch (const Error&) {
+      throw;
+    } catch (const std::runtime_error& error) {  // Spectra's
+      if (start == kMostStarts) throw NumericalError("eigenpairs", error.what());
+    }
   }
 }
 

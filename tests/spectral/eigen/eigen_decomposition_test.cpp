@@ -92,6 +92,23 @@ TEST(EigenDecomposition, CopiesOfAGraphMultiplyItsSpectrum) {
   }
 }
 
+TEST(EigenDecomposition, FindsCopiesWithoutACountToo) {
+  for (const Index side : {6, 12}) {
+    for (const auto& part : {grid_graph(side, 6), complete_graph(side)}) {
+      auto graph = part;
+      for (int copy = 1; copy < 12; ++copy) graph = disjoint_union(graph, part);
+      const Laplacian laplacian(graph);
+      const auto dense =
+          smallest_eigenpairs(laplacian, {.count = 24, .method = EigenMethod::dense});
+      const auto found = smallest_eigenpairs(
+          laplacian, {.count = 24, .method = EigenMethod::shift_invert, .check_inertia = false});
+      EXPECT_EQ(found.status, EigenStatus::converged);
+      ASSERT_EQ(found.count(), 24);
+      for (Index k = 0; k < 24; ++k) EXPECT_NEAR(found.values[k], dense.values[k], 1e-10);
+    }
+  }
+}
+
 TEST(EigenDecomposition, ManyComponentsNeedNoNullVectors) {
   std::vector<WeightedEdge> edges;
   for (Index v = 0; v < 40000; v += 4) {

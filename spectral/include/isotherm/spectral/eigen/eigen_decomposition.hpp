@@ -39,7 +39,8 @@ struct EigenOptions {
   /// Laplacian's norm bound; > 0.
   double tolerance = 1e-10;
   /// Count the eigenvalues below the largest one found by the inertia of a
-  /// factorisation (Sylvester's law), and look again for any that are missing.
+  /// factorisation (Sylvester's law), and look again for any that are missing. Else look until
+  /// nothing smaller turns up, which proves nothing.
   bool check_inertia = true;
   /// Most restarts of the iteration; >= 1.
   int max_restarts = 300;
