@@ -84,14 +84,14 @@ struct ConvertVerb {
         if (source == FileFormat::pyfg && !to_ranges) break;  // its poses are wanted
         return convert_ranges(network::read_ranges(reader, options), target);
       case FileContent::trajectory:
-        return convert_trajectory(slam::read_trajectory(reader, options), target);
+        return convert_trajectory(slam::read_trajectory(reader, source, options), target);
       case FileContent::graph:
         return convert_graph(spectral::read_graph(reader, options), target);
       case FileContent::pose_graph:
       case FileContent::unknown:
         break;
     }
-    return convert_pose_graph(slam::read_pose_graph(reader, options), target);
+    return convert_pose_graph(slam::read_pose_graph(reader, source, options), target);
   }
 
   [[noreturn]] void refuse(const ReadReport& report, FileFormat target) const {

@@ -32,7 +32,7 @@ struct InfoVerb {
     const ReadOptions options{.strict = flags.strict};
     switch (slam::content_of(format)) {
       case FileContent::trajectory:
-        return describe(slam::read_trajectory(reader, options));
+        return describe(slam::read_trajectory(reader, format, options));
       case FileContent::graph:
         return describe(spectral::read_graph(reader, options));
       case FileContent::ranges:
@@ -41,7 +41,7 @@ struct InfoVerb {
       case FileContent::unknown:
         break;
     }
-    return describe(slam::read_pose_graph(reader, options));
+    return describe(slam::read_pose_graph(reader, format, options));
   }
 
   // A PyFG file may hold a pose graph beside the ranges; it takes a second pass,

@@ -150,9 +150,9 @@ std::vector<std::optional<Pose>> read_ground_truth(const PoseGraph<Pose>& graph,
   TextReader reader(source.path);
   const FileFormat format = detect_format(reader);
   if (content_of(format) == FileContent::pose_graph) {
-    return from_pose_graph(graph, read_pose_graph(reader));
+    return from_pose_graph(graph, read_pose_graph(reader, format));
   }
-  const auto file = read_trajectory(reader);
+  const auto file = read_trajectory(reader, format);
   if (!source.timestamps.empty() && !has_timestamps(file.trajectory)) {
     throw InvalidArgument("ground-truth",
                           source.path + " has no times to match with " + source.timestamps);

@@ -273,8 +273,11 @@ class Reader {
 }  // namespace
 
 PoseGraphFile read_pose_graph(TextReader& reader, const ReadOptions& options) {
+  return read_pose_graph(reader, detect_format(reader), options);
+}
+
+PoseGraphFile read_pose_graph(TextReader& reader, FileFormat format, const ReadOptions& options) {
   options.validate();
-  const auto format = detect_format(reader);
   if (format == FileFormat::places) return read_places(reader);
   return Reader(reader, format, options).run();
 }

@@ -133,8 +133,8 @@ class Reader {
   bool stamped_ = false;
 };
 
-TrajectoryFile from_pose_graph(TextReader& reader, const ReadOptions& options) {
-  auto file = read_pose_graph(reader, options);
+TrajectoryFile from_pose_graph(TextReader& reader, FileFormat format, const ReadOptions& options) {
+  auto file = read_pose_graph(reader, format, options);
   TrajectoryFile result;
   result.report = std::move(file.report);
   std::visit([&](const auto& graph) { result.trajectory = trajectory_of(graph); }, file.graph);
@@ -144,10 +144,13 @@ TrajectoryFile from_pose_graph(TextReader& reader, const ReadOptions& options) {
 }  // namespace
 
 TrajectoryFile read_trajectory(TextReader& reader, const ReadOptions& options) {
+  return read_trajectory(reader, detect_format(reader), options);
+}
+
+TrajectoryFile read_trajectory(TextReader& reader, FileFormat format, const ReadOptions& options) {
   options.validate();
-  const auto format = detect_format(reader);
   if (content_of(format) == FileContent::pose_graph || format == FileFormat::pyfg) {
-    return from_pose_graph(reader, options);
+    return from_pose_graph(reader, format, options);
   }
   TrajectoryFile file;
   file.report.path = reader.path();

@@ -7,6 +7,7 @@
 #include "isotherm/base/read_report.hpp"
 #include "isotherm/base/text_reader.hpp"
 #include "isotherm/slam/graph/any_pose_graph.hpp"
+#include "isotherm/slam/io/file_format.hpp"
 
 namespace isotherm::slam {
 
@@ -43,6 +44,10 @@ PoseGraphFile read_pose_graph(const std::string& path, const ReadOptions& option
 
 /// The same from a reader that stands at the start of its input.
 PoseGraphFile read_pose_graph(TextReader& reader, const ReadOptions& options = {});
+
+/// The same where the format is known from detect_format().
+PoseGraphFile read_pose_graph(TextReader& reader, FileFormat format,
+                              const ReadOptions& options = {});
 
 /// Writes g2o: vertices in order of id, FIX lines, constraints in their order,
 /// numbers with the fewest digits that read back to the same value. `path` may be

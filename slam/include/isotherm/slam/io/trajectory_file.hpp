@@ -27,6 +27,10 @@ TrajectoryFile read_trajectory(const std::string& path, const ReadOptions& optio
 /// The same from a reader that stands at the start of its input.
 TrajectoryFile read_trajectory(TextReader& reader, const ReadOptions& options = {});
 
+/// The same where the format is known from detect_format().
+TrajectoryFile read_trajectory(TextReader& reader, FileFormat format,
+                               const ReadOptions& options = {});
+
 /// Writes TUM, KITTI, EuRoC or planar rows. Planar poses are lifted to z = 0
 /// where the format is spatial; where it needs time stamps and there are none,
 /// pose k gets stamp k.
