@@ -42,6 +42,22 @@ std::shared_ptr<gzFile_s> open_gzip(const std::string& path) {
   return {file, [](gzFile open) { gzclose(open); }};
 }
 
+// Number of bytes read, 0 at the end.
+std::size_t read_some(gzFile file, const std::string& name, std::span<char> target) {
+  const int count = gzread(file, target.data(), static_cast<unsigned>(target.size()));
+  int code = Z_OK;
+  const char* problem = gzerror(file, &code);
+  if (count < 0 || (count == 0 && code != Z_OK && code != Z_STREAM_END)) {
+    std::string_view reason = code == Z_ERRNO ? std::strerror(errno) : problem;
+    // zlib puts the path in front of its own messages.
+    if (const auto colon = reason.find(": "); colon != reason.npos) {
+      reason.remove_prefix(colon + 2);
+    }
+    throw FileError(name, "cannot be read: " + std::string(reason));
+  }
+  return static_cast<std::size_t>(count);
+}
+
 // Leaves `first` behind an optional plus sign, which from_chars does not take.
 bool skip_plus(const char*& first, const char* last) noexcept {
   if (first == last || *first != '+') return true;
@@ -74,19 +90,21 @@ bool parse_unsigned(std::string_view text, std::uint64_t& value) noexcept {
 
 TextReader::TextReader(const std::string& path) : path_(path == "-" ? "<stdin>" : path) {
   source_ = [file = open_gzip(path), name = path_](std::span<char> target) {
-    const int count = gzread(file.get(), target.data(), static_cast<unsigned>(target.size()));
-    int code = Z_OK;
-    const char* problem = gzerror(file.get(), &code);
-    if (count < 0 || (count == 0 && code != Z_OK && code != Z_STREAM_END)) {
-      std::string_view reason = code == Z_ERRNO ? std::strerror(errno) : problem;
-      // zlib puts the path in front of its own messages.
-      if (const auto colon = reason.find(": "); colon != reason.npos) {
-        reason.remove_prefix(colon + 2);
-      }
-      throw FileError(name, "cannot be read: " + std::string(reason));
-    }
-    return static_cast<std::size_t>(count);
+    return read_some(file.get(), name, target);
   };
+}
+
+std::string read_whole(const std::string& path) {
+  const auto file = open_gzip(path);
+  const std::string name = path == "-" ? "<stdin>" : path;
+  std::string text;
+  for (std::size_t end = 0;;) {
+    text.resize(end + kFirstBufferSize);
+    const std::size_t count = read_some(file.get(), name, std::span(text).subspan(end));
+    end += count;
+    text.resize(end);
+    if (count == 0) return text;
+  }
 }
 
 TextReader::TextReader(std::string name, std::string_view text) : path_(std::move(name)) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -27,12 +28,41 @@ std::string temporary_name(const std::string& target) {
   return target + ".part-" + std::to_string(::getpid()) + "-" + std::to_string(counter++);
 }
 
-// The file a symbolic link points to, so that renaming does not replace the link.
+// The file a symbolic link points to, there or not, so that renaming does not replace the
+// link.
 std::string resolve_links(const std::string& path) {
+  constexpr int kLongestChain = 40;  // as the kernel has it
+  fs::path target = path;
   std::error_code problem;
-  if (!fs::is_symlink(fs::symlink_status(path, problem))) return path;
-  const auto target = fs::weakly_canonical(path, problem);
-  return problem ? path : target.string();
+  for (int links = 0; links < kLongestChain; ++links) {
+    if (!fs::is_symlink(fs::symlink_status(target, problem))) break;
+    const auto next = fs::read_symlink(target, problem);
+    if (problem) break;
+    target = target.parent_path() / next;  // `next` alone where that is absolute
+  }
+  return target.string();
+}
+
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+// What links a file without a name to one.
+std::string name_of_descriptor(int descriptor) {
+  return "/proc/self/fd/" + std::to_string(descriptor);
+}
+
+// A file that has no name yet and is gone with the process that writes it; -1 where the
+// file system has none.
+int open_unnamed(const std::string& target) {
+#ifdef O_TMPFILE
+  const int descriptor = ::open(folder_of(target).c_str(), O_TMPFILE | O_WRONLY, 0666);
+  if (descriptor >= 0 && ::access(name_of_descriptor(descriptor).c_str(), F_OK) == 0) {
+    return descriptor;
+  }
+  if (descriptor >= 0) ::close(descriptor);
+#endif
+  return -1;
 }
 
 std::string system_problem() { return std::strerror(errno); }
@@ -53,8 +83,9 @@ std::string format_number(double value) {
 
 struct OutputFile::State {
   std::string path;       // as the caller gave it, for messages
-  std::string target;     // what the temporary is renamed to; empty if written directly
-  std::string temporary;  // what exists until commit
+  std::string target;     // what gets the result; empty if it is written directly
+  std::string temporary;  // a name that exists until commit; empty while there is none
+  int unnamed = -1;       // second descriptor of a file without a name, or -1
   std::string pending;
   gzFile file = nullptr;
 
@@ -68,14 +99,23 @@ struct OutputFile::State {
     const auto status = fs::status(path, ignored);
     if (fs::exists(status) && !fs::is_regular_file(status)) return ::open(path.c_str(), O_WRONLY);
     target = resolve_links(path);
-    temporary = temporary_name(target);
-    const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0666);
-    if (descriptor < 0) {
-      temporary.clear();
-    } else if (fs::exists(status)) {
-      fs::permissions(temporary, status.permissions(), ignored);
+    const int descriptor = open_temporary();
+    if (descriptor >= 0 && fs::exists(status)) {
+      ::fchmod(descriptor, static_cast<mode_t>(status.permissions() & fs::perms::mask));
     }
     return descriptor;
+  }
+
+  int open_temporary() {
+    const int descriptor = open_unnamed(target);
+    if (descriptor >= 0) {
+      unnamed = ::dup(descriptor);
+      return descriptor;
+    }
+    temporary = temporary_name(target);
+    const int named = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0666);
+    if (named < 0) temporary.clear();
+    return named;
   }
 
   void flush() {
@@ -91,8 +131,23 @@ struct OutputFile::State {
     if (code != Z_OK) fail(system_problem());
   }
 
+  // Puts what was written in the place of the target.
+  void take_place() {
+    if (unnamed >= 0) {
+      const std::string name = temporary_name(target);
+      if (::linkat(AT_FDCWD, name_of_descriptor(unnamed).c_str(), AT_FDCWD, name.c_str(),
+                   AT_SYMLINK_FOLLOW) != 0) {
+        fail(system_problem());
+      }
+      temporary = name;
+    }
+    if (std::rename(temporary.c_str(), target.c_str()) != 0) fail(system_problem());
+    temporary.clear();
+  }
+
   ~State() {
     if (file != nullptr) gzclose(file);
+    if (unnamed >= 0) ::close(unnamed);
     if (!temporary.empty()) ::unlink(temporary.c_str());
   }
 };
@@ -120,11 +175,29 @@ void OutputFile::write(std::string_view text) {
 void OutputFile::commit() {
   state_->flush();
   state_->close();
-  if (state_->temporary.empty()) return;
-  if (std::rename(state_->temporary.c_str(), state_->target.c_str()) != 0) {
-    state_->fail(system_problem());
-  }
-  state_->temporary.clear();
+  if (!state_->target.empty()) state_->take_place();
+}
+
+std::string output_target(const std::string& path) {
+  if (path == "-") return path;
+  std::error_code problem;
+  const auto target = fs::weakly_canonical(resolve_links(path), problem);
+  return problem ? path : target.string();
+}
+
+void require_writable(const std::string& path) {
+  const auto fail = [&path](const std::string& problem) {
+    throw FileError(path, "cannot be written: " + problem);
+  };
+  if (path.empty()) fail("empty name");
+  if (path == "-") return;
+  std::error_code ignored;
+  const auto status = fs::status(path, ignored);
+  if (fs::is_directory(status)) fail(std::strerror(EISDIR));
+  const bool in_place = fs::exists(status) && !fs::is_regular_file(status);
+  const std::string needed = in_place ? path : folder_of(resolve_links(path)).string();
+  if (::access(needed.c_str(), in_place ? W_OK : W_OK | X_OK) != 0) fail(system_problem());
+  if (!in_place && !fs::is_directory(needed, ignored)) fail(std::strerror(ENOTDIR));
 }
 
 }  // namespace isotherm

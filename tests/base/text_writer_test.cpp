@@ -52,6 +52,45 @@ TEST(OutputFile, ReplacesTheFileALinkPointsTo) {
   EXPECT_EQ(read_file(folder / "real"), "new");
 }
 
+TEST(OutputFile, MakesTheFileADanglingLinkPointsTo) {
+  const TemporaryFolder folder;
+  fs::create_symlink("second", folder / "first");
+  fs::create_symlink("real", folder / "second");
+  EXPECT_EQ(output_target(folder / "first"), output_target(folder / "./real"));
+  OutputFile file(folder / "first");
+  file.write("new");
+  file.commit();
+  EXPECT_TRUE(fs::is_symlink(folder / "first"));
+  EXPECT_TRUE(fs::is_symlink(folder / "second"));
+  EXPECT_EQ(read_file(folder / "real"), "new");
+  EXPECT_EQ(entries(folder), 3);
+}
+
+TEST(OutputFile, KeepsThePermissionsOfTheFileItReplaces) {
+  const TemporaryFolder folder;
+  write_file(folder / "a", "old");
+  const auto own = fs::perms::owner_read | fs::perms::owner_write;
+  fs::permissions(folder / "a", own);
+  OutputFile file(folder / "a");
+  file.write("new");
+  file.commit();
+  EXPECT_EQ(fs::status(folder / "a").permissions(), own);
+}
+
+TEST(RequireWritable, LooksAheadAndCreatesNothing) {
+  const TemporaryFolder folder;
+  write_file(folder / "file", "x");
+  require_writable("-");
+  require_writable("/dev/null");
+  require_writable(folder / "file");
+  require_writable(folder / "new");
+  EXPECT_THROW(require_writable(""), FileError);
+  EXPECT_THROW(require_writable(folder.path().string()), FileError);
+  EXPECT_THROW(require_writable(folder / "no/such/folder"), FileError);
+  EXPECT_THROW(require_writable(folder / "file/below"), FileError);
+  EXPECT_EQ(entries(folder), 1);
+}
+
 TEST(OutputFile, WritesDevicesDirectly) {
   OutputFile file("/dev/null");
   file.write("x");

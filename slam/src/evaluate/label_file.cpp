@@ -1,4 +1,6 @@
+#include <cstdint>
 #include <string_view>
+#include <unordered_set>
 
 #include "isotherm/base/csv.hpp"
 #include "isotherm/base/csv_enum.hpp"
@@ -28,6 +30,7 @@ void write_labels(const std::string& path, const std::vector<EdgeLabel>& labels)
 std::vector<EdgeLabel> read_labels(const std::string& path) {
   CsvReader csv(path);
   std::vector<EdgeLabel> labels;
+  std::unordered_set<std::int64_t> seen;
   if (!csv.next_row()) return labels;
   const auto edge = csv.column("edge", 0);
   const auto from = csv.column("from", 1);
@@ -36,6 +39,7 @@ std::vector<EdgeLabel> read_labels(const std::string& path) {
   do {
     EdgeLabel row;
     row.edge = static_cast<std::int64_t>(csv.unsigned_integer(edge, "edge"));
+    if (!seen.insert(row.edge).second) csv.fail(edge, "edge occurs twice");
     row.from = csv.unsigned_integer(from, "from");
     row.to = csv.unsigned_integer(to, "to");
     row.label = csv_enum<Label>(csv, label, "label");

@@ -1,5 +1,6 @@
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -59,6 +60,10 @@ Matrix arranged(const std::array<double, kCount>& entries,
   return m;
 }
 
+constexpr std::size_t kMostKeptBytes = std::size_t{64} << 20;
+constexpr std::size_t kLongestTag = 64;
+constexpr std::size_t kMostTags = 1000;
+
 class Reader {
  public:
   Reader(TextReader& text, FileFormat format, const ReadOptions& options)
@@ -82,8 +87,7 @@ class Reader {
     if (untagged_ && !text_.line().starts_with('#')) return read_known(Tag::edge_se2);
     const auto tag = text_.word();
     if (tag.front() == '#') {
-      file_.other_lines.emplace_back(text_.line());
-      return;
+      return keep_line();
     }
     for (const auto& [name, value] : kTags) {
       if (tag != name) continue;
@@ -133,11 +137,27 @@ class Reader {
     if (std::isalpha(static_cast<unsigned char>(tag.front())) == 0) {
       text_.fail("expected a record tag such as VERTEX_SE2 or EDGE_SE3:QUAT");
     }
-    if (file_.report.skipped[std::string(tag)]++ == 0) {
+    auto& skipped = file_.report.skipped;
+    std::string name(tag.substr(0, kLongestTag));
+    if (skipped.size() >= kMostTags && skipped.count(name) == 0) name = "(other)";
+    if (skipped[name]++ == 0) {
       file_.report.add_note({"unknown record", text_.location(), std::string(tag),
                              "unknown record; kept as it stands but not used"});
     }
-    if (!named_) file_.other_lines.emplace_back(text_.line());
+    if (!named_) keep_line();
+  }
+
+  // Comments and records of other kinds, for writing, as long as there is room: a small
+  // compressed file may hold any amount of them.
+  void keep_line() {
+    kept_bytes_ += sizeof(std::string) + text_.line().size();
+    if (kept_bytes_ <= kMostKeptBytes) {
+      file_.other_lines.emplace_back(text_.line());
+    } else if (!std::exchange(left_out_, true)) {
+      file_.report.add_note({"left out", text_.location(), "",
+                             "from here on, comments and unknown records are not kept: there "
+                             "are more than 64 MB of them"});
+    }
   }
 
   // PyFG names a vertex by a letter and a number: GTSAM's 64-bit key.
@@ -150,6 +170,14 @@ class Reader {
       text_.fail("expected " + std::string(what) + ", a letter and a number below 2^56");
     }
     return static_cast<VertexId>(name.front()) << 56 | number;
+  }
+
+  // Squares of larger numbers leave the range of a double.
+  double information_entry() {
+    constexpr double kLargest = 1e100;
+    const double value = text_.number("an information entry");
+    if (std::abs(value) > kLargest) text_.fail("expected an information entry of at most 1e100");
+    return value;
   }
 
   // What is no covariance gets an information matrix that is found out as
@@ -195,9 +223,9 @@ class Reader {
     constraint.T_from_to = read_pose();
 
     std::array<double, kCount> entries;
-    entries[0] = text_.number("an information entry");
+    entries[0] = information_entry();
     const std::uint64_t column = text_.location().column;
-    for (std::size_t k = 1; k < kCount; ++k) entries[k] = text_.number("an information entry");
+    for (std::size_t k = 1; k < kCount; ++k) entries[k] = information_entry();
     constraint.information = arranged<typename Pose::Matrix>(entries, order);
     if (named_) constraint.information = inverse_covariance(constraint.information);
     if (is_positive_semidefinite(constraint.information)) return;
@@ -267,6 +295,8 @@ class Reader {
   std::vector<FixedVertex> fixed_;
   bool untagged_;  // every line is an EDGE_SE2 without its tag
   bool named_;     // PyFG: time stamps, names for ids, covariances
+  std::size_t kept_bytes_ = 0;
+  bool left_out_ = false;  // more lines than are kept
   std::array<std::uint64_t, kTags.size()> counts_{};
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -22,10 +21,11 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
-std::vector<Index> other_neighbours(const WeightedGraph& graph, Index vertex, Index other) {
+// Ascending, each once, without the vertex itself.
+std::vector<Index> sorted_neighbours(const WeightedGraph& graph, Index vertex) {
   std::vector<Index> found;
   for (const auto& neighbour : graph.neighbours(vertex)) {
-    if (neighbour.vertex != other && neighbour.vertex != vertex) found.push_back(neighbour.vertex);
+    if (neighbour.vertex != vertex) found.push_back(neighbour.vertex);
   }
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
@@ -37,14 +37,34 @@ struct NeighbourCounts {
   std::size_t all = 0;
 };
 
-NeighbourCounts count_neighbours(const WeightedGraph& graph, Index edge) {
-  const auto [from, to, weight] = graph.edge(edge);
-  const auto first = other_neighbours(graph, from, to);
-  const auto second = other_neighbours(graph, to, from);
-  std::vector<Index> common;
-  std::set_intersection(first.begin(), first.end(), second.begin(), second.end(),
-                        std::back_inserter(common));
-  return {common.size(), first.size() + second.size() - common.size()};
+// Of the two ends of an edge, which do not count themselves. The shorter list is looked up
+// in the longer one, so that a hub costs little more than its neighbours.
+NeighbourCounts count_neighbours(const std::vector<Index>& first, const std::vector<Index>& second,
+                                 bool self_loop) {
+  const bool swapped = second.size() < first.size();
+  const auto& shorter = swapped ? second : first;
+  const auto& longer = swapped ? first : second;
+  const auto common = static_cast<std::size_t>(std::ranges::count_if(
+      shorter, [&](Index vertex) { return std::ranges::binary_search(longer, vertex); }));
+  const std::size_t ends = self_loop ? 0 : 2;  // each is in the other's list
+  return {common, first.size() + second.size() - ends - common};
+}
+
+std::vector<NeighbourCounts> count_all_neighbours(const WeightedGraph& graph) {
+  std::vector<std::vector<Index>> neighbours;
+  for (Index v = 0; v < graph.vertex_count(); ++v) {
+    neighbours.push_back(sorted_neighbours(graph, v));
+  }
+  std::vector<NeighbourCounts> counts;
+  for (const auto& [from, to, weight] : graph.edges()) {
+    counts.push_back(count_neighbours(neighbours[from], neighbours[to], from == to));
+  }
+  return counts;
+}
+
+double jaccard_index(const NeighbourCounts& counts) {
+  if (counts.all == 0) return -1.0;
+  return static_cast<double>(counts.common) / static_cast<double>(counts.all);
 }
 
 std::vector<double> affinity_scores(const WeightedGraph& graph, const JudgeEdgesOptions& options,
@@ -74,8 +94,8 @@ std::vector<double> resistance_scores(const WeightedGraph& graph) {
 
 std::vector<double> jaccard_scores(const WeightedGraph& graph) {
   std::vector<double> scores;
-  for (Index e = 0; e < graph.edge_count(); ++e) {
-    const double index = jaccard_index(graph, e);
+  for (const auto& counts : count_all_neighbours(graph)) {
+    const double index = jaccard_index(counts);
     scores.push_back(index < 0.0 ? kUnknown : 1.0 - index);
   }
   return scores;
@@ -83,8 +103,7 @@ std::vector<double> jaccard_scores(const WeightedGraph& graph) {
 
 std::vector<double> common_neighbour_scores(const WeightedGraph& graph) {
   std::vector<double> scores;
-  for (Index e = 0; e < graph.edge_count(); ++e) {
-    const auto [common, all] = count_neighbours(graph, e);
+  for (const auto& [common, all] : count_all_neighbours(graph)) {
     scores.push_back(all == 0 ? kUnknown : 1.0 / (1.0 + static_cast<double>(common)));
   }
   return scores;
@@ -212,8 +231,9 @@ void JudgeEdgesOptions::validate() const {
 }
 
 double jaccard_index(const WeightedGraph& graph, Index edge) {
-  const auto [common, all] = count_neighbours(graph, edge);
-  return all == 0 ? -1.0 : static_cast<double>(common) / static_cast<double>(all);
+  const auto [from, to, weight] = graph.edge(edge);
+  return jaccard_index(
+      count_neighbours(sorted_neighbours(graph, from), sorted_neighbours(graph, to), from == to));
 }
 
 WeightedGraph apply_verdicts(const WeightedGraph& graph, const EdgeVerdicts& verdicts,

@@ -1,7 +1,9 @@
 #include "isotherm/spectral/edges/verdict_file.hpp"
 
+#include <cstdint>
 #include <limits>
 #include <string_view>
+#include <unordered_set>
 
 #include "isotherm/base/csv.hpp"
 #include "isotherm/base/csv_enum.hpp"
@@ -51,6 +53,7 @@ void write_verdicts(const std::string& path, const EdgeVerdicts& verdicts) {
 EdgeVerdicts read_verdicts(const std::string& path) {
   CsvReader csv(path);
   EdgeVerdicts verdicts;
+  std::unordered_set<std::int64_t> seen;
   if (!csv.next_row()) return verdicts;
   const auto edge = csv.column("edge", 0);
   const auto from = csv.column("from", 1);
@@ -62,6 +65,7 @@ EdgeVerdicts read_verdicts(const std::string& path) {
   do {
     EdgeVerdict row;
     row.edge = static_cast<std::int64_t>(csv.unsigned_integer(edge, "edge"));
+    if (!seen.insert(row.edge).second) csv.fail(edge, "edge occurs twice");
     row.from = csv.unsigned_integer(from, "from");
     row.to = csv.unsigned_integer(to, "to");
     row.verdict = csv_enum<Verdict>(csv, decided, "verdict");

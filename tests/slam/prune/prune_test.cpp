@@ -40,6 +40,46 @@ TEST(Prune, LoopsBetweenPartsAreKeptWithAWarning) {
   EXPECT_EQ(result.warnings.size(), 1u);
 }
 
+TEST(Prune, SelfEdgesAreSetAsideByEveryMethod) {
+  PoseGraph<Pose2> graph;
+  graph.ids = {0, 1, 2, 3, 4};
+  for (Index v = 0; v < 4; ++v) graph.constraints.push_back({v, v + 1, Pose2(1, 0, 0)});
+  graph.constraints.push_back({2, 2, Pose2(5, 0, 0)});
+  graph.constraints.push_back({0, 3, Pose2(3, 0, 0)});
+  graph.constraints.push_back({0, 0, Pose2(0, 0, 0)});
+  for (const auto& method : prune_methods()) {
+    const auto name = method_name(method);
+    const auto result = prune(graph, method);
+    ASSERT_EQ(result.verdicts.size(), 3u) << name;
+    for (const Index k : {0, 2}) {
+      EXPECT_EQ(result.verdicts[k].edge, 4 + k) << name;
+      EXPECT_EQ(result.verdicts[k].verdict, Verdict::ambiguous) << name;
+      EXPECT_EQ(result.verdicts[k].stage, "self-edge") << name;
+    }
+    EXPECT_EQ(result.verdicts[1].edge, 5) << name;
+    EXPECT_EQ(result.verdicts[1].verdict, Verdict::keep) << name;
+    EXPECT_NE(result.warnings.back().find("2 edges join a vertex with itself"), std::string::npos);
+  }
+}
+
+TEST(Prune, LoopsBetweenChainsThatMeetEachInOneVertex) {
+  for (const Index length : {1, 2, 2001}) {
+    PoseGraph<Pose2> graph;
+    for (Index v = 0; v < length; ++v) {
+      graph.ids.push_back(static_cast<VertexId>(v));
+      if (v > 0) graph.constraints.push_back({v - 1, v, Pose2(1, 0, 0)});
+    }
+    // Another robot, of one pose: all loops touch it, so that no pose is left to move.
+    graph.ids.push_back(VertexId{1} << 60);
+    for (int copies = 0; copies < 3; ++copies) {
+      graph.constraints.push_back({0, length, Pose2(1, 2, 0.5)});
+    }
+    graph.constraints.push_back({0, 0, Pose2(1, 0, 0)});
+    const auto result = prune(graph);
+    EXPECT_EQ(result.verdicts.size(), 4u);
+  }
+}
+
 TEST(Prune, Chi2SeparatesTheRealLoopsOfBicocca) {
   ISOTHERM_REAL_DATA_OR_SKIP(folder, "paper/b25b");
   const auto file = read_pose_graph((folder / "B25b_0.000.g2o").string());

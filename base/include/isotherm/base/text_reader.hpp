@@ -110,6 +110,10 @@ class TextReader {
   const char* token_end_ = nullptr;
 };
 
+/// All that is in `path` ("-" is standard input), decompressed.
+/// @throws FileError
+std::string read_whole(const std::string& path);
+
 /// `text` as a finite number, or nothing: decimal, an optional sign and an
 /// exponent of any length. No blanks around it.
 bool parse_number(std::string_view text, double& value) noexcept;

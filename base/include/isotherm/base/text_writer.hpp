@@ -21,9 +21,11 @@ std::string format_number(double value);
 
 /// An output file that appears whole or not at all.
 ///
-/// What is written goes to a temporary beside the target, which takes the
+/// What is written goes to a temporary in the target's folder, which takes the
 /// target's name in `commit`; without it the temporary is removed and an older
-/// file of that name stays. The path "-" is standard output, and a path that is
+/// file of that name stays. Where the file system allows it, the temporary has no
+/// name before, so that not even a killed process leaves it behind. A symbolic link
+/// is followed. The path "-" is standard output, and a path that is
 /// no regular file (a device, a pipe) is written directly. A name that ends in
 /// ".gz" is compressed.
 class OutputFile {
@@ -45,5 +47,13 @@ class OutputFile {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// The file that writing to `path` makes or replaces: links followed, no "." or "..", so
+/// that two names of one file are the same. "-" is itself.
+std::string output_target(const std::string& path);
+
+/// For a look ahead, before hours of work: nothing is created.
+/// @throws FileError if OutputFile could not write to `path` as things stand.
+void require_writable(const std::string& path);
 
 }  // namespace isotherm

@@ -4,6 +4,7 @@
 
 #include "graph/candidate_verdicts.hpp"
 #include "isotherm/base/error.hpp"
+#include "isotherm/slam/graph/information.hpp"
 #include "prune/consensus/pairs/near_pairs.hpp"
 #include "prune/consensus/search/search.hpp"
 
@@ -15,6 +16,15 @@ void ConsensusOptions::validate() const {
   }
   if (window <= 0) throw InvalidArgument("window", "must be positive");
   if (max_rounds <= 0) throw InvalidArgument("max_rounds", "must be positive");
+}
+
+template <class Pose>
+std::vector<Index> unusable_odometry(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
+  std::vector<Index> unusable;
+  for (const Index k : roles.odometry) {
+    if (!is_usable_information<Pose::kDof>(graph.constraints[k].information)) unusable.push_back(k);
+  }
+  return unusable;
 }
 
 template <class Pose>
@@ -41,6 +51,8 @@ ConsensusResult consensus(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
   return result;
 }
 
+template std::vector<Index> unusable_odometry(const PoseGraph<Pose2>&, const EdgeRoles&);
+template std::vector<Index> unusable_odometry(const PoseGraph<Pose3>&, const EdgeRoles&);
 template ConsensusResult consensus(const PoseGraph<Pose2>&, const EdgeRoles&,
                                    const ConsensusOptions&, const RunContext&);
 template ConsensusResult consensus(const PoseGraph<Pose3>&, const EdgeRoles&,

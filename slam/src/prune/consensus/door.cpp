@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <string>
 
+#include "isotherm/slam/graph/information.hpp"
 #include "isotherm/slam/prune/prune.hpp"
 
 namespace isotherm::slam::detail {
@@ -29,6 +30,26 @@ PruneResult prune_by_structure(const PoseGraph<Pose>& graph, const EdgeRoles& ro
   return result;
 }
 
+// Odometry as consensus can chain it, and a warning for what had to be changed.
+template <class Pose>
+PoseGraph<Pose> with_usable_odometry(const PoseGraph<Pose>& graph,
+                                     const std::vector<Index>& unusable,
+                                     std::vector<std::string>& warnings) {
+  PoseGraph<Pose> repaired = graph;
+  for (const Index k : unusable) {
+    auto& information = repaired.constraints[k].information;
+    information = usable_information<Pose::kDof>(information);
+  }
+  const auto& first = graph.constraints[unusable.front()];
+  std::string warning = "odometry edge " + std::to_string(unusable.front()) + ", from vertex " +
+                        std::to_string(graph.ids[first.from]) + " to " +
+                        std::to_string(graph.ids[first.to]);
+  if (unusable.size() > 1) warning += ", and " + std::to_string(unusable.size() - 1) + " more";
+  warnings.push_back(warning +
+                     ": information matrix too near to a singular one; made less extreme");
+  return repaired;
+}
+
 }  // namespace
 
 template <class Pose>
@@ -40,7 +61,13 @@ PruneResult prune_by(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
   }
   PruneResult result;
   result.method = ConsensusOptions::method();
-  result.consensus = consensus(graph, roles, options, run);
+  const auto unusable = unusable_odometry(graph, roles);
+  if (unusable.empty()) {
+    result.consensus = consensus(graph, roles, options, run);
+  } else {
+    const auto repaired = with_usable_odometry(graph, unusable, result.warnings);
+    result.consensus = consensus(repaired, roles, options, run);
+  }
   result.verdicts = std::move(result.consensus.verdicts);
   if (!result.consensus.settled) {
     result.warnings.push_back("consensus stopped after " + std::to_string(options.max_rounds) +

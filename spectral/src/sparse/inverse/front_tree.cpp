@@ -10,6 +10,7 @@ FrontTree::FrontTree(const BlockCholesky& factor)
       position_(static_cast<std::size_t>(factor.block_count())),
       block_at_(position_.size()),
       front_at_(position_.size()) {
+  if (position_.empty()) return;  // nothing was factorised
   const int d = block_size_;
   for (std::size_t at = 0; at < factor_.order.size(); at += d) {
     const auto position = static_cast<Index>(at / d);

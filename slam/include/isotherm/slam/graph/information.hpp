@@ -16,4 +16,17 @@ template <int Dof>
 Eigen::Matrix<double, Dof, Dof> covariance_from_information(
     const Eigen::Matrix<double, Dof, Dof>& information);
 
+/// Whether odometry with this information can be chained and solved for: neither singular
+/// nor with entries on the diagonal further apart than 10^12. A zero matrix counts as usable:
+/// it says "not known". k x k, k = 3 or 6.
+template <int Dof>
+bool is_usable_information(const Eigen::Matrix<double, Dof, Dof>& information);
+
+/// The usable matrix that is nearest in meaning: deviations too small beside the largest
+/// grow, and a direction without information gets a little.
+/// @throws NumericalError if an entry is not finite.
+template <int Dof>
+Eigen::Matrix<double, Dof, Dof> usable_information(
+    const Eigen::Matrix<double, Dof, Dof>& information);
+
 }  // namespace isotherm::slam

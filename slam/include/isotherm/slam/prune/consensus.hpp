@@ -101,6 +101,11 @@ template <class Pose>
 ConsensusResult consensus(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                           const ConsensusOptions& options = {}, const RunContext& run = {});
 
+/// Odometry (constraint numbers) whose information matrix is too near to a singular one, see
+/// is_usable_information(). prune() repairs it and warns; consensus() takes it as it is.
+template <class Pose>
+std::vector<Index> unusable_odometry(const PoseGraph<Pose>& graph, const EdgeRoles& roles);
+
 namespace detail {
 
 /// The door of the method's room, through which prune() comes.

@@ -20,9 +20,11 @@ class Cells {
 
   Cells(Index window, std::size_t loops) : window_(window), key_(loops) {}
 
+  // In ascending order. Of loops between the same two vertices only the first can be among
+  // the nearest of any: thousands of copies are not looked at for each other.
   void add(Index loop, Index from_chain, Index to_chain, Index from, Index to) {
     key_[loop] = {from_chain, to_chain, from / window_, to / window_};
-    cells_[key_[loop]].push_back(loop);
+    if (++copies_[{from, to}] <= kMostPartners + 1) cells_[key_[loop]].push_back(loop);
   }
 
   template <class Visit>
@@ -43,6 +45,7 @@ class Cells {
   Index window_;
   std::vector<Key> key_;
   std::map<Key, std::vector<Index>> cells_;
+  std::map<std::pair<Index, Index>, std::size_t> copies_;  // by the vertices they join
 };
 
 // For each loop those of the same chains within the window at both ends, nearest first.
