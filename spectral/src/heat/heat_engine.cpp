@@ -77,21 +77,21 @@ class HeatEngine::Rational {
 
   const RationalExponential& approximation() const { return approximation_; }
 
-  const SupernodalStructure& structure() {
-    if (!structure_) {
+  const FrontalMatrix& matrix() {
+    if (!matrix_) {
       const SparseMatrix lower = laplacian_.triangularView<Eigen::Lower>();
-      structure_ = analyse(with_pairs(lower, rows_));
+      matrix_ = analyse(with_pairs(lower, rows_));
     }
-    return *structure_;
+    return *matrix_;
   }
 
-  FrontQueries queries() { return locate(structure(), rows_); }
+  FrontQueries queries() { return locate(matrix().tree, rows_); }
 
  private:
   const SparseMatrix& laplacian_;
   std::vector<VertexPair> rows_;
   const RationalExponential& approximation_;
-  std::optional<SupernodalStructure> structure_;
+  std::optional<FrontalMatrix> matrix_;
 };
 
 HeatTable HeatEngine::evaluate(std::span<const HeatTarget> targets, std::span<const double> scales,
@@ -139,7 +139,7 @@ HeatPlan HeatEngine::choose(std::span<const HeatTarget> targets, const HeatGoal&
             std::vector<std::string>(
                 scale_count, "local Lanczos: cheaper than analysing the matrix for the other")};
   }
-  const double one_scale = rational_cost(rational.structure(), rational.approximation());
+  const double one_scale = rational_cost(rational.matrix(), rational.approximation());
   const double everything = setup + static_cast<double>(scale_count) * one_scale;
   costs = lanczos_costs(pilot, targets, goal, 2.0 * everything / target_count);
   return detail::plan(goal.scales, costs, targets.size(), one_scale, 0.0);
@@ -171,7 +171,7 @@ void HeatEngine::run_rational(std::span<const HeatTarget> targets, const HeatGoa
   std::vector<double> times;
   for (const std::size_t s : scales) times.push_back(goal.scales[s]);
   std::vector<CertifiedValue> values(targets.size() * scales.size());
-  rational_heat(rational.structure(), rational.queries(), targets, rational.approximation(), times,
+  rational_heat(rational.matrix(), rational.queries(), targets, rational.approximation(), times,
                 options_.threads, options_.progress, values);
   for (std::size_t k = 0; k < targets.size(); ++k) {
     if (targets[k].trivial()) continue;

@@ -47,7 +47,7 @@ struct TermResult {
 };
 
 template <class Scalar>
-TermResult evaluate_term(const SupernodalStructure& structure, const FrontQueries& queries,
+TermResult evaluate_term(const FrontalMatrix& matrix, const FrontQueries& queries,
                          std::span<const HeatTarget> targets, const PartialFraction& term,
                          double scale, Scalar shift, Scalar residue) {
   // An inverse's entries err by about the residual times its norm; the residual
@@ -56,7 +56,7 @@ TermResult evaluate_term(const SupernodalStructure& structure, const FrontQuerie
   constexpr double kUnit = std::numeric_limits<double>::epsilon();
   const double conjugates = is_real(term) ? 1.0 : 2.0;
   std::vector<SelectedEntries<Scalar>> entries(targets.size());
-  const auto quality = selected_entries<Scalar>(structure, queries, scale, shift, entries);
+  const auto quality = selected_entries<Scalar>(matrix, queries, scale, shift, entries);
   TermResult result;
   result.values.reserve(targets.size());
   for (std::size_t k = 0; k < targets.size(); ++k) {
@@ -69,14 +69,14 @@ TermResult evaluate_term(const SupernodalStructure& structure, const FrontQuerie
   return result;
 }
 
-TermResult evaluate_term(const SupernodalStructure& structure, const FrontQueries& queries,
+TermResult evaluate_term(const FrontalMatrix& matrix, const FrontQueries& queries,
                          std::span<const HeatTarget> targets, const PartialFraction& term,
                          double scale) {
   if (is_real(term)) {
-    return evaluate_term<double>(structure, queries, targets, term, scale, term.shift.real(),
+    return evaluate_term<double>(matrix, queries, targets, term, scale, term.shift.real(),
                                  term.residue.real());
   }
-  return evaluate_term<std::complex<double>>(structure, queries, targets, term, scale, term.shift,
+  return evaluate_term<std::complex<double>>(matrix, queries, targets, term, scale, term.shift,
                                              term.residue);
 }
 
@@ -112,18 +112,18 @@ const RationalExponential& rational_exponential_for(double tolerance) {
   return kRationalExponentials.back();
 }
 
-double rational_cost(const SupernodalStructure& structure, const RationalExponential& rational) {
+double rational_cost(const FrontalMatrix& matrix, const RationalExponential& rational) {
   // Fitted to measurements on pose graphs and meshes of 10^4 to 10^6 vertices.
   constexpr double kEntry = 100.0;
   constexpr double kFlop = 1.5;
   constexpr double kComplex = 2.5;
-  const double one = kEntry * structure.entries + kFlop * structure.flops;
+  const double one = kEntry * matrix.entries + kFlop * matrix.flops;
   double cost = 0.0;
   for (const auto& term : rational.terms) cost += is_real(term) ? one : kComplex * one;
   return cost;
 }
 
-void rational_heat(const SupernodalStructure& structure, const FrontQueries& queries,
+void rational_heat(const FrontalMatrix& matrix, const FrontQueries& queries,
                    std::span<const HeatTarget> targets, const RationalExponential& rational,
                    std::span<const double> scales, int threads, const ProgressCallback& progress,
                    std::span<CertifiedValue> values) {
@@ -134,9 +134,8 @@ void rational_heat(const SupernodalStructure& structure, const FrontQueries& que
       [] { return 0; },
       [&](int, std::int64_t task) {
         const auto index = static_cast<std::size_t>(task);
-        terms[index] =
-            evaluate_term(structure, queries, targets, rational.terms[index % term_count],
-                          scales[index / term_count]);
+        terms[index] = evaluate_term(matrix, queries, targets, rational.terms[index % term_count],
+                                     scales[index / term_count]);
       });
 
   for (std::size_t s = 0; s < scales.size(); ++s) {

@@ -6,7 +6,7 @@
 #include "heat/rational_exponential_table.hpp"
 #include "isotherm/base/progress.hpp"
 #include "isotherm/spectral/heat/heat_distance.hpp"
-#include "sparse/inverse/supernodal_structure.hpp"
+#include "sparse/inverse/frontal_matrix.hpp"
 
 namespace isotherm::spectral::detail {
 
@@ -16,7 +16,7 @@ const RationalExponential& rational_exponential_for(double tolerance);
 
 /// Rough time of all factorisations and inversions that one scale takes, in
 /// nanoseconds on one thread. Counted, not measured: the same on every machine.
-double rational_cost(const SupernodalStructure& structure, const RationalExponential& rational);
+double rational_cost(const FrontalMatrix& matrix, const RationalExponential& rational);
 
 /// The targets at every scale through exp(-x) = constant + sum_k residue_k /
 /// (x + shift_k), one selected inversion of scale * L + shift_k * I a term. An
@@ -28,7 +28,7 @@ double rational_cost(const SupernodalStructure& structure, const RationalExponen
 /// hence for any spectrum) plus an allowance for rounding, made from the
 /// residual of every inversion. Where a factorisation broke down it says nothing.
 /// @throws Cancelled.
-void rational_heat(const SupernodalStructure& structure, const FrontQueries& queries,
+void rational_heat(const FrontalMatrix& matrix, const FrontQueries& queries,
                    std::span<const HeatTarget> targets, const RationalExponential& rational,
                    std::span<const double> scales, int threads, const ProgressCallback& progress,
                    std::span<CertifiedValue> values);

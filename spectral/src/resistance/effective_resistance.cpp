@@ -37,9 +37,9 @@ ResistanceResult effective_resistances(const WeightedGraph& graph,
       rows[k] = {grounded.row_of[from], grounded.row_of[to]};
     }
   }
-  const auto structure = detail::analyse(detail::with_pairs(grounded.lower, rows));
+  const auto matrix = detail::analyse(detail::with_pairs(grounded.lower, rows));
   std::vector<detail::SelectedEntries<double>> entries(pairs.size());
-  const auto quality = detail::selected_entries<double>(structure, detail::locate(structure, rows),
+  const auto quality = detail::selected_entries<double>(matrix, detail::locate(matrix.tree, rows),
                                                         1.0, 0.0, entries);
   if (!quality.finite) throw NumericalError("resistance", "the factorisation broke down");
   for (std::size_t k = 0; k < pairs.size(); ++k) {

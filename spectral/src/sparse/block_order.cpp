@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace isotherm::spectral {
+namespace isotherm::spectral::detail {
 namespace {
 
 using Neighbours = std::vector<std::vector<Index>>;
@@ -75,4 +75,4 @@ ChainElimination eliminate_chains(Index count, std::span<const std::pair<Index, 
   return result;
 }
 
-}  // namespace isotherm::spectral
+}  // namespace isotherm::spectral::detail

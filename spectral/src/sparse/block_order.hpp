@@ -6,7 +6,7 @@
 
 #include "isotherm/spectral/types.hpp"
 
-namespace isotherm::spectral {
+namespace isotherm::spectral::detail {
 
 /// Blocks with at most two neighbours, in an order in which they can be eliminated
 /// first, and what is left of the graph then.
@@ -21,4 +21,4 @@ struct ChainElimination {
 /// minimum degree would leave one as long as the chain. O(size of the graph).
 ChainElimination eliminate_chains(Index count, std::span<const std::pair<Index, Index>> pairs);
 
-}  // namespace isotherm::spectral
+}  // namespace isotherm::spectral::detail

@@ -9,7 +9,7 @@ void dtrsm_(const char* side, const char* triangle, const char* trans, const cha
             const int* lda, double* b, const int* ldb);
 }
 
-namespace isotherm::spectral {
+namespace isotherm::spectral::detail {
 
 void add_product(DenseView C, double scale, const ConstDenseView& A, const ConstDenseView& B) {
   if (C.size() == 0 || A.cols() == 0) return;
@@ -42,4 +42,4 @@ void solve_lower(const ConstDenseView& L, DenseView X) { solve_triangle("L", L, 
 
 void solve_lower_from_right(const ConstDenseView& L, DenseView X) { solve_triangle("R", L, X); }
 
-}  // namespace isotherm::spectral
+}  // namespace isotherm::spectral::detail

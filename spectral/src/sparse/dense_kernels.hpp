@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace isotherm::spectral {
+namespace isotherm::spectral::detail {
 
 /// Dense products by the BLAS that CHOLMOD uses as well: several times as fast as
 /// Eigen's on machines with wide vectors, since the target is chosen when they run.
@@ -18,4 +18,4 @@ void solve_lower(const ConstDenseView& L, DenseView X);
 /// X = X L^-1, of which the lower triangle of L is used.
 void solve_lower_from_right(const ConstDenseView& L, DenseView X);
 
-}  // namespace isotherm::spectral
+}  // namespace isotherm::spectral::detail

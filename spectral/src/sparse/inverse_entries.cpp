@@ -13,9 +13,9 @@ InverseEntries inverse_entries(const SparseMatrix& lower, std::span<const Vertex
   for (auto& [from, to] : rows) {
     if (from == to) to = -1;
   }
-  const auto structure = detail::analyse(detail::with_pairs(lower, rows));
+  const auto matrix = detail::analyse(detail::with_pairs(lower, rows));
   std::vector<detail::SelectedEntries<double>> entries(pairs.size());
-  const auto quality = detail::selected_entries<double>(structure, detail::locate(structure, rows),
+  const auto quality = detail::selected_entries<double>(matrix, detail::locate(matrix.tree, rows),
                                                         1.0, 0.0, entries);
   if (!quality.finite) throw NumericalError("selected inversion", "the factorisation broke down");
   InverseEntries result;

@@ -127,7 +127,7 @@ TEST(PairCovariance, NeedsASupernodalFactor) {
 TEST(ChainElimination, TakesAChainApartInFewRounds) {
   Pairs chain;
   for (Index k = 0; k + 1 < 100; ++k) chain.emplace_back(k + 1, k);
-  const auto result = eliminate_chains(100, chain);
+  const auto result = detail::eliminate_chains(100, chain);
   EXPECT_EQ(result.order.size(), 100u);
   EXPECT_TRUE(result.core.empty());
   EXPECT_TRUE(result.pairs.empty());
@@ -148,15 +148,15 @@ TEST(ChainElimination, LeavesTheGraphBetweenCrossings) {
       pairs.emplace_back(b, at);
     }
   }
-  const auto result = eliminate_chains(next, pairs);
+  const auto result = detail::eliminate_chains(next, pairs);
   EXPECT_EQ(result.core, (std::vector<Index>{0, 1, 2, 3}));
   EXPECT_EQ(result.pairs, (Pairs{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}));
   EXPECT_EQ(result.order.size(), static_cast<std::size_t>(next - 4));
 }
 
 TEST(ChainElimination, DegenerateGraphs) {
-  EXPECT_TRUE(eliminate_chains(0, {}).order.empty());
-  EXPECT_EQ(eliminate_chains(3, {}).order, (std::vector<Index>{0, 1, 2}));
+  EXPECT_TRUE(detail::eliminate_chains(0, {}).order.empty());
+  EXPECT_EQ(detail::eliminate_chains(3, {}).order, (std::vector<Index>{0, 1, 2}));
 }
 
 }  // namespace

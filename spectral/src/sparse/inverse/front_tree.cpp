@@ -2,30 +2,43 @@
 
 #include <algorithm>
 
-namespace isotherm::spectral {
+namespace isotherm::spectral::detail {
 
 FrontTree::FrontTree(const BlockCholesky& factor)
-    : factor_(factor.supernodes()),
-      block_size_(factor.block_size()),
-      position_(static_cast<std::size_t>(factor.block_count())),
+    : FrontTree(factor.supernodes(), factor.block_size()) {}
+
+FrontTree::FrontTree(const Supernodes& supernodes, int block_size)
+    : block_size_(block_size),
+      value_start_(supernodes.value_start),
+      values_(supernodes.values),
+      position_(supernodes.order.size() / block_size),
       block_at_(position_.size()),
       front_at_(position_.size()) {
   if (position_.empty()) return;  // nothing was factorised
   const int d = block_size_;
-  for (std::size_t at = 0; at < factor_.order.size(); at += d) {
+  for (std::size_t at = 0; at < supernodes.order.size(); at += d) {
     const auto position = static_cast<Index>(at / d);
-    block_at_[position] = factor_.order[at] / d;
+    block_at_[position] = supernodes.order[at] / d;
     position_[block_at_[position]] = position;
   }
-  for (const int column : factor_.first_column) first_column_.push_back(column / d);
-  for (const int start : factor_.row_start) row_start_.push_back(start / d);
-  const auto fronts = static_cast<Index>(first_column_.size()) - 1;
+  for (const Index column : supernodes.first_column) first_column_.push_back(column / d);
+  row_start_.push_back(0);
+  for (std::size_t f = 0; f + 1 < supernodes.first_column.size(); ++f) {
+    for (Index at = supernodes.row_start[f]; at < supernodes.row_start[f + 1]; at += d) {
+      rows_.push_back(supernodes.rows[at] / d);
+    }
+    row_start_.push_back(static_cast<Index>(rows_.size()));
+  }
+  link_fronts();
+}
+
+void FrontTree::link_fronts() {
+  const auto fronts = static_cast<Index>(row_start_.size()) - 1;
   for (Index f = 0; f < fronts; ++f) {
     std::fill(front_at_.begin() + first_column_[f], front_at_.begin() + first_column_[f + 1], f);
   }
-
   parent_.assign(fronts, kNone);
-  place_in_parent_.assign(row_start_.back(), kNone);
+  place_in_parent_.assign(rows_.size(), kNone);
   for (Index f = 0; f < fronts; ++f) {
     Index k = width(f);
     if (k == size(f)) continue;
@@ -40,8 +53,7 @@ FrontTree::FrontTree(const BlockCholesky& factor)
 FrontTree::Values FrontTree::values(Index front) const {
   const Eigen::Index rows = Eigen::Index{size(front)} * block_size_;
   const Eigen::Index columns = Eigen::Index{width(front)} * block_size_;
-  return {factor_.values.data() + factor_.value_start[front], rows, columns,
-          Eigen::OuterStride<>(rows)};
+  return {values_.data() + value_start_[front], rows, columns, Eigen::OuterStride<>(rows)};
 }
 
 Index FrontTree::meeting(Index a, Index b) const {
@@ -55,4 +67,4 @@ Index FrontTree::meeting(Index a, Index b) const {
   return a == b ? a : kNone;
 }
 
-}  // namespace isotherm::spectral
+}  // namespace isotherm::spectral::detail

@@ -5,7 +5,7 @@
 
 #include "sparse/dense_kernels.hpp"
 
-namespace isotherm::spectral {
+namespace isotherm::spectral::detail {
 namespace {
 
 constexpr Eigen::Index kFewestRows = 16;  // below these, dense kernels do not pay
@@ -68,4 +68,4 @@ void HalfSolve<Dof>::solve(Index front) {
 template class HalfSolve<3>;
 template class HalfSolve<6>;
 
-}  // namespace isotherm::spectral
+}  // namespace isotherm::spectral::detail

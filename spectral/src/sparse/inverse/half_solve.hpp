@@ -7,7 +7,7 @@
 
 #include "sparse/inverse/front_tree.hpp"
 
-namespace isotherm::spectral {
+namespace isotherm::spectral::detail {
 
 /// Those rows of L^-1 that belong to one front's own columns, for blocks that are
 /// eliminated there or below. Since Z = A^-1 = (L^-1)' L^-1, the products of two blocks'
@@ -48,4 +48,4 @@ class HalfSolve {
 extern template class HalfSolve<3>;
 extern template class HalfSolve<6>;
 
-}  // namespace isotherm::spectral
+}  // namespace isotherm::spectral::detail

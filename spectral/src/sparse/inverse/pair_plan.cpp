@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace isotherm::spectral {
+namespace isotherm::spectral::detail {
 
 PairPlan::PairPlan(const FrontTree& tree, std::span<const Pair> pairs) {
   sort_pairs_by_meeting(tree, pairs);
@@ -26,35 +26,14 @@ void PairPlan::sort_pairs_by_meeting(const FrontTree& tree, std::span<const Pair
   std::partial_sum(first_pair_.begin(), first_pair_.end(), first_pair_.begin());
 }
 
-// Those on the way from a root to a row that is asked for. A front's cost is that of
-// its whole branch.
 void PairPlan::find_wanted_fronts(const FrontTree& tree, std::span<const Pair> pairs) {
-  const Index fronts = tree.front_count();
-  std::vector<bool> wanted(fronts, false);
+  wanted_.assign(tree.front_count(), false);
   for (const auto& [a, b] : pairs) {
-    if (a >= 0) wanted[tree.front_of(a)] = true;
-    if (b >= 0) wanted[tree.front_of(b)] = true;
+    if (a >= 0) wanted_[tree.front_of(a)] = true;
+    if (b >= 0) wanted_[tree.front_of(b)] = true;
   }
-  std::vector<double> cost(fronts, 0.0);
-  children_.resize(fronts);
-  for (Index f = 0; f < fronts; ++f) {
-    if (!wanted[f]) continue;
-    const double size = tree.size(f);
-    cost[f] += size * size * tree.width(f);
-    const Index p = tree.parent(f);
-    if (p == FrontTree::kNone) {
-      roots_.push_back(f);
-    } else {
-      wanted[p] = true;
-      cost[p] += cost[f];
-      children_[p].push_back(f);
-    }
-  }
-  for (auto& list : children_) {
-    if (list.empty()) continue;
-    std::iter_swap(list.begin(), std::max_element(list.begin(), list.end(), [&](Index x, Index y) {
-                     return cost[x] < cost[y];
-                   }));
+  for (Index f = 0; f < tree.front_count(); ++f) {
+    if (wanted_[f] && tree.parent(f) != FrontTree::kNone) wanted_[tree.parent(f)] = true;
   }
 }
 
@@ -78,11 +57,11 @@ void PairPlan::choose_half_solved(const FrontTree& tree, std::span<const Pair> p
       if (a != f && b != f) saved[f] += 2.0 * tree.size(f) * tree.size(f);
       row_cost[f] += 1.0;
     }
-    for (const Index child : children_[f]) {
-      saved[f] += std::max(0.0, saved[child]);
-      row_cost[f] += row_cost[child] + entries(child);
-    }
     saved[f] -= tree.width(f) * row_cost[f];
+    const Index p = tree.parent(f);
+    if (!wanted_[f] || p == FrontTree::kNone) continue;
+    saved[p] += std::max(0.0, saved[f]);
+    row_cost[p] += row_cost[f] + entries(f);
   }
   half_solved_.assign(fronts, false);
   for (Index f = fronts - 1; f >= 0; --f) {
@@ -91,4 +70,4 @@ void PairPlan::choose_half_solved(const FrontTree& tree, std::span<const Pair> p
   }
 }
 
-}  // namespace isotherm::spectral
+}  // namespace isotherm::spectral::detail

@@ -6,7 +6,7 @@
 
 #include "sparse/inverse/front_tree.hpp"
 
-namespace isotherm::spectral {
+namespace isotherm::spectral::detail {
 
 /// Which fronts lead to some pairs of block rows, where the branches of each pair meet,
 /// and how the blocks of Z = A^-1 between them are best found there.
@@ -17,10 +17,8 @@ class PairPlan {
   /// A negative row of a pair stands for one that A does not have.
   PairPlan(const FrontTree& tree, std::span<const Pair> pairs);
 
-  /// The wanted fronts on top, and those directly below a wanted one, the costliest branch
-  /// first.
-  const std::vector<Index>& roots() const noexcept { return roots_; }
-  const std::vector<Index>& children(Index front) const { return children_[front]; }
+  /// Whether a front is on the way from a root to a row that is asked for.
+  bool wanted(Index front) const { return wanted_[front]; }
 
   /// Numbers of the pairs whose branches meet at a front, ascending.
   std::span<const std::size_t> meeting_at(Index front) const {
@@ -39,9 +37,8 @@ class PairPlan {
 
   std::vector<std::size_t> by_meeting_;  // pairs, by the front where their branches meet
   std::vector<std::size_t> first_pair_;  // places in by_meeting_, one a front and an end
-  std::vector<std::vector<Index>> children_;
-  std::vector<Index> roots_;
+  std::vector<bool> wanted_;
   std::vector<bool> half_solved_;
 };
 
-}  // namespace isotherm::spectral
+}  // namespace isotherm::spectral::detail

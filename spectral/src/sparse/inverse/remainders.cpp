@@ -2,7 +2,7 @@
 
 #include "sparse/dense_kernels.hpp"
 
-namespace isotherm::spectral {
+namespace isotherm::spectral::detail {
 
 template <int Dof>
 Remainders<Dof>::Remainders(const FrontTree& tree, std::span<const Pair> pairs,
@@ -65,4 +65,4 @@ void Remainders<Dof>::carry_up(Index front, Group group) {
 template class Remainders<3>;
 template class Remainders<6>;
 
-}  // namespace isotherm::spectral
+}  // namespace isotherm::spectral::detail

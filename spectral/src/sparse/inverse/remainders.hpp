@@ -9,7 +9,7 @@
 
 #include "sparse/inverse/front_tree.hpp"
 
-namespace isotherm::spectral {
+namespace isotherm::spectral::detail {
 
 /// What elimination of the fronts below one front leaves of e_a on the rows of that
 /// front, for every row a of some pairs that is eliminated below it. Rows whose
@@ -52,4 +52,4 @@ class Remainders {
 extern template class Remainders<3>;
 extern template class Remainders<6>;
 
-}  // namespace isotherm::spectral
+}  // namespace isotherm::spectral::detail

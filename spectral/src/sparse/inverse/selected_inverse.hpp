@@ -3,7 +3,7 @@
 #include <complex>
 #include <span>
 
-#include "sparse/inverse/supernodal_structure.hpp"
+#include "sparse/inverse/frontal_matrix.hpp"
 
 namespace isotherm::spectral::detail {
 
@@ -38,8 +38,8 @@ struct SelectedEntries {
 /// imaginary part, which bounds every pivot from below. Scalar is double or
 /// std::complex<double>.
 template <class Scalar>
-SelectedInverseQuality selected_entries(const SupernodalStructure& structure,
-                                        const FrontQueries& queries, double scale, Scalar shift,
+SelectedInverseQuality selected_entries(const FrontalMatrix& matrix, const FrontQueries& queries,
+                                        double scale, Scalar shift,
                                         std::span<SelectedEntries<Scalar>> entries);
 
 }  // namespace isotherm::spectral::detail

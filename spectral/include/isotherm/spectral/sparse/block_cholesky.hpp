@@ -11,6 +11,11 @@
 
 namespace isotherm::spectral {
 
+namespace detail {
+class CholmodFactor;
+struct Supernodes;
+}  // namespace detail
+
 /// How a Cholesky factor is stored.
 enum class FactorForm {
   fastest,     ///< whatever takes the least time to factorise and to solve
@@ -76,21 +81,11 @@ class BlockCholesky {
   /// @throws NumericalError without a successful factorise() before.
   double log_determinant() const;
 
-  /// A = L L' by supernodes: runs of columns of L with the same rows below them. All
-  /// indices count scalars, in order of elimination, and no supernode parts a block.
-  struct Supernodes {
-    std::span<const int> first_column;  ///< one a supernode, and the end
-    std::span<const int> row_start;     ///< in `rows`, one a supernode, and the end
-    std::span<const int> rows;          ///< ascending; own columns first
-    std::span<const int> value_start;   ///< in `values`, one a supernode
-    std::span<const double> values;     ///< dense and by columns; lower triangular on top
-    std::span<const int> order;         ///< the row of A eliminated k-th
-  };
-
+  /// A = L L' by dense blocks of columns, which part no block of rows.
   /// Valid until the next factorisation.
   /// @throws InvalidArgument unless the form is supernodal; NumericalError without a
   /// successful factorise() before.
-  Supernodes supernodes() const;
+  detail::Supernodes supernodes() const;
 
  private:
   // A block inside the column-compressed values: the place of its first entry
@@ -103,7 +98,6 @@ class BlockCholesky {
     BlockPlace block;
     bool transposed = false;
   };
-  struct Factor;
 
   template <class Derived>
   auto view(const BlockPlace& place) {
@@ -125,7 +119,7 @@ class BlockCholesky {
   std::vector<int> column_starts_;
   std::vector<int> rows_;
   std::vector<double> values_;
-  std::unique_ptr<Factor> factor_;
+  std::unique_ptr<detail::CholmodFactor> factor_;  // none without blocks
 };
 
 }  // namespace isotherm::spectral
