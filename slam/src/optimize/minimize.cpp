@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "isotherm/base/error.hpp"
+#include "isotherm/spectral/sparse/damped_step.hpp"
 
 namespace isotherm::slam {
 namespace {
@@ -22,13 +24,6 @@ double total_cost(const EdgeCost& edge_cost, const Eigen::VectorXd& chi2) {
   double sum = 0.0;
   for (Index k = 0; k < chi2.size(); ++k) sum += edge_cost(k, chi2[k]).cost;
   return sum;
-}
-
-// Diagonal of the Hessian, with a floor for directions that nothing measures.
-Eigen::VectorXd damping_scale(const spectral::BlockCholesky& hessian) {
-  const Eigen::VectorXd diagonal = hessian.diagonal();
-  const double largest = diagonal.size() > 0 ? diagonal.maxCoeff() : 0.0;
-  return diagonal.cwiseMax(largest > 0.0 ? 1e-12 * largest : 1.0);
 }
 
 template <class Pose>
@@ -50,6 +45,17 @@ class Minimizer {
     summary_.final_cost = cost_;
     return summary_;
   }
+
+  // What a damped step asks for.
+  std::optional<double> move(double damping) {
+    if (!equations_.hessian().factorise(damping * scale_)) return std::nullopt;
+    const Eigen::VectorXd step = equations_.hessian().solve(-equations_.gradient());
+    before_ = poses_;
+    equations_.retract(step, poses_);
+    return damping * step.dot(scale_.cwiseProduct(step)) - step.dot(equations_.gradient());
+  }
+  double cost() const { return total_cost(edge_cost_, equations_.chi2(poses_)); }
+  void take_back() { poses_ = std::move(before_); }
 
  private:
   double linearize() {
@@ -103,42 +109,26 @@ class Minimizer {
   }
 
   OptimizeStatus levenberg_marquardt() {
-    double damping = kFirstDamping;
-    double growth = 2.0;
-    Eigen::VectorXd scale = damping_scale(equations_.hessian());
+    spectral::GainDamping damping{kFirstDamping};
+    scale_ = spectral::damping_scale(equations_.hessian());
     while (summary_.iterations < options_.max_iterations) {
       report_progress(options_, summary_.iterations++);
-      double gain = -1.0;  // achieved decrease over promised decrease
-      if (equations_.hessian().factorise(damping * scale)) {
-        const Eigen::VectorXd step = equations_.hessian().solve(-equations_.gradient());
-        const double promised =
-            damping * step.dot(scale.cwiseProduct(step)) - step.dot(equations_.gradient());
-        std::vector<Pose> candidate = poses_;
-        equations_.retract(step, candidate);
-        const double cost = total_cost(edge_cost_, equations_.chi2(candidate));
-        const double decrease = cost_ - cost;
-        if (decrease > 0.0) {
-          gain = decrease / promised;
-          poses_ = std::move(candidate);
-          const double remaining = remaining_decrease(decrease);
-          const bool done = negligible(promised) ||
-                            negligible(damping <= kNegligibleDamping ? remaining : decrease);
-          cost_ = cost;
-          if (done) return OptimizeStatus::converged;
-          linearize();
-          scale = damping_scale(equations_.hessian());
-        } else if (negligible(promised)) {
-          return OptimizeStatus::converged;
-        }
+      const auto trial = spectral::try_damped_step(*this, damping.value, cost_);
+      if (!trial.lower) {
+        if (trial.solved && negligible(trial.promised)) return OptimizeStatus::converged;
+        damping.follow(-1.0);
+        if (damping.value > kLargestDamping) return OptimizeStatus::diverged;
+        continue;
       }
-      if (gain > 0.0) {
-        damping *= std::max(0.1, 1.0 - std::pow(2.0 * gain - 1.0, 3));
-        growth = 2.0;
-      } else {
-        damping *= growth;
-        growth *= 2.0;
-        if (damping > kLargestDamping) return OptimizeStatus::diverged;
-      }
+      const double decrease = cost_ - trial.cost;
+      const double remaining = remaining_decrease(decrease);
+      const bool done = negligible(trial.promised) ||
+                        negligible(damping.value <= kNegligibleDamping ? remaining : decrease);
+      cost_ = trial.cost;
+      if (done) return OptimizeStatus::converged;
+      linearize();
+      scale_ = spectral::damping_scale(equations_.hessian());
+      damping.follow(decrease / trial.promised);
     }
     return OptimizeStatus::iteration_limit;
   }
@@ -150,6 +140,8 @@ class Minimizer {
   MinimizeSummary summary_;
   double cost_ = 0.0;
   double last_decrease_ = 0.0;  // of the step before
+  Eigen::VectorXd scale_;       // of the damping
+  std::vector<Pose> before_;    // the step that is tried
 };
 
 }  // namespace
@@ -164,16 +156,7 @@ void report_progress(const MinimizeOptions& options, int iteration) {
 
 template <class Pose>
 Eigen::VectorXd gauss_newton_step(NormalEquations<Pose>& equations) {
-  spectral::BlockCholesky& hessian = equations.hessian();
-  bool definite = hessian.factorise();
-  if (!definite) {
-    const Eigen::VectorXd scale = damping_scale(hessian);
-    for (double damping = 1e-12; !definite && damping <= 1.0; damping *= 100.0) {
-      definite = hessian.factorise(damping * scale);
-    }
-  }
-  if (!definite) throw NumericalError("gauss-newton", "the normal equations are not definite");
-  return hessian.solve(-equations.gradient());
+  return spectral::solve_least_damped(equations.hessian(), -equations.gradient());
 }
 
 template <class Pose>

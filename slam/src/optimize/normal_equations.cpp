@@ -3,10 +3,10 @@
 namespace isotherm::slam {
 
 template <class Pose>
-NormalEquations<Pose>::NormalEquations(const PoseGraph<Pose>& graph)
+NormalEquations<Pose>::NormalEquations(const PoseGraph<Pose>& graph, spectral::FactorForm form)
     : gauge_(fix_gauge(graph)),
       edges_(edges_of(graph, gauge_)),
-      hessian_(pattern_of(edges_, gauge_)),
+      hessian_(pattern_of(edges_, gauge_, form)),
       gradient_(Eigen::VectorXd::Zero(hessian_.size())) {}
 
 template <class Pose>
@@ -26,12 +26,13 @@ std::vector<typename NormalEquations<Pose>::Edge> NormalEquations<Pose>::edges_o
 
 template <class Pose>
 spectral::BlockCholesky NormalEquations<Pose>::pattern_of(const std::vector<Edge>& edges,
-                                                          const Gauge& gauge) {
+                                                          const Gauge& gauge,
+                                                          spectral::FactorForm form) {
   std::vector<std::pair<Index, Index>> pairs;
   for (const Edge& edge : edges) {
     if (edge.pair >= 0) pairs.emplace_back(gauge.variable[edge.from], gauge.variable[edge.to]);
   }
-  return spectral::BlockCholesky(Pose::kDof, gauge.variable_count, pairs);
+  return spectral::BlockCholesky(Pose::kDof, gauge.variable_count, pairs, form);
 }
 
 template <class Pose>

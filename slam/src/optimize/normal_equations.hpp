@@ -36,7 +36,8 @@ template <class Pose>
 class NormalEquations {
  public:
   /// Copies what it needs; the symbolic factorisation happens here.
-  explicit NormalEquations(const PoseGraph<Pose>& graph);
+  explicit NormalEquations(const PoseGraph<Pose>& graph,
+                           spectral::FactorForm form = spectral::FactorForm::fastest);
 
   const Gauge& gauge() const noexcept { return gauge_; }
   Index constraint_count() const noexcept { return static_cast<Index>(edges_.size()); }
@@ -70,7 +71,8 @@ class NormalEquations {
   };
 
   static std::vector<Edge> edges_of(const PoseGraph<Pose>& graph, const Gauge& gauge);
-  static spectral::BlockCholesky pattern_of(const std::vector<Edge>& edges, const Gauge& gauge);
+  static spectral::BlockCholesky pattern_of(const std::vector<Edge>& edges, const Gauge& gauge,
+                                            spectral::FactorForm form);
   void add_edge(const Edge& edge, const typename Pose::Matrix& hessian_to,
                 const typename Pose::Tangent& gradient_to, const typename Pose::Matrix& adjoint);
 

@@ -6,16 +6,14 @@
 #include <utility>
 
 #include <Eigen/SVD>
-#include <Eigen/SparseCholesky>
 
 #include "isotherm/geometry/points/point_alignment.hpp"
 #include "isotherm/spectral/graph/weighted_graph.hpp"
+#include "isotherm/spectral/sparse/damped_step.hpp"
 #include "localize/patches/smallest_eigenvectors.hpp"
 
 namespace isotherm::network::detail {
 namespace {
-
-using Triplets = std::vector<Eigen::Triplet<double, Index>>;
 
 constexpr int kReweightings = 3;
 constexpr double kWeakest = 0.02;  // trust below which two patches are not joined
@@ -98,29 +96,29 @@ std::vector<PatchGroup> group(const RangeProblem& problem, const std::vector<Pat
   return groups;
 }
 
+template <class Joined>
+std::vector<std::pair<Index, Index>> ends_of(const std::vector<Joined>& joined) {
+  std::vector<std::pair<Index, Index>> ends;
+  for (const auto& each : joined) ends.emplace_back(each.from, each.to);
+  return ends;
+}
+
 // Z minimising sum trust |Z_from - R Z_to|^2 over orthonormal columns, a d x d block
 // a patch, rounded to orthogonal blocks.
 std::vector<Eigen::MatrixXd> solve_rotations(const PatchGroup& group, int d,
                                              const std::vector<double>& trust) {
-  const auto size = static_cast<Index>(group.centres.size()) * d;
-  Triplets entries;
+  const auto patches = static_cast<Index>(group.centres.size());
+  spectral::BlockCholesky laplacian(d, patches, ends_of(group.joints));
   for (std::size_t k = 0; k < group.joints.size(); ++k) {
     const auto& joint = group.joints[k];
-    for (int i = 0; i < d; ++i) {
-      entries.emplace_back(joint.from * d + i, joint.from * d + i, trust[k]);
-      entries.emplace_back(joint.to * d + i, joint.to * d + i, trust[k]);
-      for (int j = 0; j < d; ++j) {
-        const double value = -trust[k] * joint.rotation(i, j);
-        entries.emplace_back(joint.from * d + i, joint.to * d + j, value);
-        entries.emplace_back(joint.to * d + j, joint.from * d + i, value);
-      }
-    }
+    const Eigen::MatrixXd diagonal = trust[k] * Eigen::MatrixXd::Identity(d, d);
+    laplacian.add_diagonal(joint.from, diagonal);
+    laplacian.add_diagonal(joint.to, diagonal);
+    laplacian.add_pair(k, -trust[k] * joint.rotation);
   }
-  spectral::SparseMatrix laplacian(size, size);
-  laplacian.setFromTriplets(entries.begin(), entries.end());
   const Eigen::MatrixXd vectors = smallest_eigenvectors(laplacian, d);
   std::vector<Eigen::MatrixXd> blocks;
-  for (Index p = 0; p < size / d; ++p) {
+  for (Index p = 0; p < patches; ++p) {
     blocks.push_back(orthogonal(vectors.middleRows(p * d, d)));
   }
   return blocks;
@@ -154,22 +152,21 @@ struct Step {
 
 Eigen::MatrixXd solve_positions(const std::vector<Step>& steps, const std::vector<double>& weights,
                                 Index nodes, int d) {
-  Triplets entries;
+  using One = Eigen::Matrix<double, 1, 1>;
+  spectral::BlockCholesky laplacian(1, nodes, ends_of(steps));
   Eigen::MatrixXd right = Eigen::MatrixXd::Zero(nodes, d);
   for (std::size_t k = 0; k < steps.size(); ++k) {
     const auto& [from, to, way] = steps[k];
-    entries.emplace_back(from, from, weights[k]);
-    entries.emplace_back(to, to, weights[k]);
-    entries.emplace_back(std::max(from, to), std::min(from, to), -weights[k]);
+    const One weight = One::Constant(weights[k]);
+    laplacian.add_diagonal(from, weight);
+    laplacian.add_diagonal(to, weight);
+    laplacian.add_pair(k, -weight);
     right.row(to) += weights[k] * way.transpose();
     right.row(from) -= weights[k] * way.transpose();
   }
   // The first node is pinned: only differences are known.
-  entries.emplace_back(0, 0, 1.0);
-  spectral::SparseMatrix laplacian(nodes, nodes);
-  laplacian.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<spectral::SparseMatrix, Eigen::Lower> factor(laplacian);
-  return factor.solve(right).transpose();
+  laplacian.add_diagonal(0, One::Ones());
+  return spectral::solve_least_damped(laplacian, right).transpose();
 }
 
 StitchedPart place_members(const PatchGroup& group, const std::vector<Patch>& patches, int d) {

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <Eigen/Cholesky>
 
+#include "isotherm/spectral/sparse/damped_step.hpp"
 #include "localize/problem/absence.hpp"
 #include "localize/problem/classical_scaling.hpp"
-#include "localize/problem/damped_step.hpp"
+#include "localize/problem/geman_mcclure.hpp"
 #include "localize/problem/range_problem.hpp"
 
 namespace isotherm::network::detail {
@@ -57,14 +59,14 @@ class DenseSystem {
     return matrix_.diagonal().sum() > 0.0;
   }
 
-  bool move(double damping) {
+  std::optional<double> move(double damping) {
     Eigen::MatrixXd damped = matrix_;
     damped.diagonal().array() += damping * matrix_.diagonal().mean();
     const Eigen::VectorXd step = damped.ldlt().solve(-gradient_);
     before_ = network_.positions;
     network_.positions.rightCols(free_nodes()) +=
         step.reshaped(network_.positions.rows(), free_nodes());
-    return true;
+    return -step.dot(gradient_);
   }
 
   void take_back() { network_.positions = before_; }
@@ -141,7 +143,7 @@ void fit_robustly(SmallNetwork& network, double width, int max_iterations) {
   double cost = system.cost();
   for (int k = 0; k < max_iterations; ++k) {
     const double before = cost;
-    const bool moved = damped_step(system, damping, cost);
+    const bool moved = spectral::damped_step(system, damping, cost);
     const bool still = !moved || before - cost <= kStill * before;
     if (still && current <= width) return;
     if (still || (k + 1) % kStepsPerWidth == 0) {

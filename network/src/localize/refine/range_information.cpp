@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <Eigen/QR>
-#include <Eigen/SparseCholesky>
+
+#include "isotherm/base/error.hpp"
+#include "isotherm/spectral/sparse/block_covariance.hpp"
 
 namespace isotherm::network::detail {
 namespace {
@@ -13,43 +16,75 @@ namespace {
 // say, far above rounding.
 constexpr double kRegularisation = 1e-11;
 
+struct PairBlocks {
+  Block first, second, cross;  // of the inverse
+};
+
+template <int Dimension>
+std::vector<PairBlocks> pair_blocks_of(const spectral::BlockCholesky& factor,
+                                       std::span<const std::pair<Index, Index>> pairs) {
+  std::vector<PairBlocks> blocks;
+  for (const auto& pair : spectral::pair_covariances<Dimension>(factor, pairs)) {
+    blocks.push_back({pair.first, pair.second, pair.cross});
+  }
+  return blocks;
+}
+
+std::vector<PairBlocks> pair_blocks(const spectral::BlockCholesky& factor,
+                                    std::span<const std::pair<Index, Index>> pairs) {
+  return factor.block_size() == 2 ? pair_blocks_of<2>(factor, pairs)
+                                  : pair_blocks_of<3>(factor, pairs);
+}
+
 }  // namespace
 
 RangeInformation::RangeInformation(const RangeProblem& problem, const std::vector<bool>& use,
                                    const Placement& placement, bool unit_weights)
-    : problem_(problem), use_(use), placement_(placement), unit_weights_(unit_weights) {
-  const int d = problem.dimension;
-  first_row_.assign(problem.nodes, -1);
+    : problem_(problem),
+      use_(use),
+      placement_(placement),
+      unit_weights_(unit_weights),
+      variable_(problem.nodes, -1),
+      matrix_(problem.dimension, 0, {}) {
   for (Index v = 0; v < problem.nodes; ++v) {
     if (!placement.placed[v] || problem.is_anchor[v]) continue;
-    first_row_[v] = static_cast<Index>(unknown_nodes_.size()) * d;
+    variable_[v] = static_cast<Index>(unknown_nodes_.size());
     unknown_nodes_.push_back(v);
   }
-  std::vector<Eigen::Triplet<double, Index>> entries;
-  const auto add_block = [&](Index a, Index b, const Block& block) {
-    if (a < 0 || b < 0) return;
-    for (int i = 0; i < d; ++i) {
-      for (int j = 0; j < d; ++j) {
-        if (a + i >= b + j) entries.emplace_back(a + i, b + j, block(i, j));
-      }
-    }
-  };
-  for (const Index v : unknown_nodes_) add_block(row(v), row(v), Block::Zero(d, d));
+  Pairs pairs;
   for (std::size_t k = 0; k < problem.ranges.size(); ++k) {
     const auto& range = problem.ranges[k];
-    if (!use[k] || !between_placed(k)) continue;
+    if (use[k] && between_unknowns(k))
+      pairs.emplace_back(variable_[range.from], variable_[range.to]);
+  }
+  const std::size_t of_ranges = pairs.size();
+  const auto frame = problem.anchored() ? std::vector<Index>{} : frame_nodes();
+  for (std::size_t a = 0; a < frame.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b)
+      pairs.emplace_back(variable_[frame[a]], variable_[frame[b]]);
+  }
+  matrix_ = spectral::BlockCholesky(problem.dimension, static_cast<Index>(unknown_nodes_.size()),
+                                    pairs, spectral::FactorForm::supernodal);
+  add_ranges();
+  hold_frame(frame, of_ranges);
+}
+
+void RangeInformation::add_ranges() {
+  std::size_t pair = 0;
+  for (std::size_t k = 0; k < problem_.ranges.size(); ++k) {
+    const auto& range = problem_.ranges[k];
+    if (!use_[k] || !between_placed(k)) continue;
     const Point u = direction(range.from, range.to);
     const Block block = information(k) * u * u.transpose();
-    const Index a = row(range.from);
-    const Index b = row(range.to);
-    add_block(a, a, block);
-    add_block(b, b, block);
-    add_block(std::max(a, b), std::min(a, b), -block);
+    for (const Index node : {range.from, range.to}) {
+      if (variable_[node] >= 0) matrix_.add_diagonal(variable_[node], block);
+    }
+    if (between_unknowns(k)) matrix_.add_pair(pair++, -block);
   }
-  if (!problem.anchored()) hold_frame(entries);
-  const auto size = static_cast<Index>(unknown_nodes_.size()) * d;
-  matrix_.resize(size, size);
-  matrix_.setFromTriplets(entries.begin(), entries.end());
+}
+
+bool RangeInformation::between_unknowns(std::size_t k) const {
+  return variable_[problem_.ranges[k].from] >= 0 && variable_[problem_.ranges[k].to] >= 0;
 }
 
 bool RangeInformation::between_placed(std::size_t k) const {
@@ -84,7 +119,7 @@ std::vector<Index> RangeInformation::frame_nodes() const {
   const auto neighbours = [&](Index node) {
     std::vector<Index> found;
     for (const auto& [vertex, edge] : graph.neighbours(node)) {
-      if (pair_used[edge] && first_row_[vertex] >= 0) found.push_back(vertex);
+      if (pair_used[edge] && variable_[vertex] >= 0) found.push_back(vertex);
     }
     std::sort(found.begin(), found.end());
     return found;
@@ -139,8 +174,7 @@ Eigen::MatrixXd RangeInformation::rigid_motions(const std::vector<Index>& nodes)
   return qr.householderQ() * Eigen::MatrixXd::Identity(motions.rows(), qr.rank());
 }
 
-void RangeInformation::hold_frame(std::vector<Eigen::Triplet<double, Index>>& entries) const {
-  const auto nodes = frame_nodes();
+void RangeInformation::hold_frame(const std::vector<Index>& nodes, std::size_t first_pair) {
   if (nodes.empty()) return;
   const int d = problem_.dimension;
   const Eigen::MatrixXd motions = rigid_motions(nodes);
@@ -149,59 +183,39 @@ void RangeInformation::hold_frame(std::vector<Eigen::Triplet<double, Index>>& en
     if (use_[k]) scale = std::max(scale, information(k));
   }
   const Eigen::MatrixXd penalty = scale * motions * motions.transpose();
+  const auto block = [&](std::size_t a, std::size_t b) -> Block {
+    return penalty.block(static_cast<Eigen::Index>(a) * d, static_cast<Eigen::Index>(b) * d, d, d);
+  };
   for (std::size_t a = 0; a < nodes.size(); ++a) {
-    for (std::size_t b = 0; b < nodes.size(); ++b) {
-      for (int i = 0; i < d; ++i) {
-        for (int j = 0; j < d; ++j) {
-          const Index r = row(nodes[a]) + i;
-          const Index c = row(nodes[b]) + j;
-          if (r >= c) {
-            entries.emplace_back(r, c,
-                                 penalty(static_cast<Eigen::Index>(a) * d + i,
-                                         static_cast<Eigen::Index>(b) * d + j));
-          }
-        }
-      }
-    }
+    matrix_.add_diagonal(variable_[nodes[a]], block(a, a));
+    for (std::size_t b = 0; b < a; ++b) matrix_.add_pair(first_pair++, block(a, b));
   }
 }
 
-spectral::SparseMatrix RangeInformation::regularised(double relative) const {
-  spectral::SparseMatrix matrix = matrix_;
-  const double largest = matrix.rows() > 0 ? matrix.diagonal().maxCoeff() : 0.0;
-  const double amount = relative * (largest > 0.0 ? largest : 1.0);
-  for (Index i = 0; i < unknowns(); ++i) matrix.coeffRef(i, i) += amount;
-  return matrix;
+// `regularisation` is relative to the largest diagonal entry.
+void RangeInformation::factorise(double regularisation) {
+  const double largest = unknowns() > 0 ? matrix_.diagonal().maxCoeff() : 0.0;
+  const double amount = regularisation * (largest > 0.0 ? largest : 1.0);
+  if (matrix_.factorise(Eigen::VectorXd::Constant(unknowns(), amount))) return;
+  throw NumericalError("localisation", "the information matrix is not positive definite");
 }
 
-std::vector<Eigen::MatrixXd> RangeInformation::diagonal_blocks(
-    const spectral::SparseMatrix& matrix) const {
-  const int d = problem_.dimension;
-  std::vector<spectral::VertexPair> wanted;
-  for (const Index v : unknown_nodes_) {
-    for (int i = 0; i < d; ++i) {
-      for (int j = 0; j <= i; ++j) wanted.push_back({row(v) + i, row(v) + j});
-    }
-  }
-  const auto values = spectral::inverse_entries(matrix, wanted).values;
+std::vector<Eigen::MatrixXd> RangeInformation::diagonal_blocks() const {
+  Pairs wanted;
+  for (const Index v : unknown_nodes_) wanted.emplace_back(variable_[v], -1);
+  const auto found = pair_blocks(matrix_, wanted);
   std::vector<Eigen::MatrixXd> blocks(problem_.nodes);
-  std::size_t next = 0;
-  for (const Index v : unknown_nodes_) {
-    blocks[v].resize(d, d);
-    for (int i = 0; i < d; ++i) {
-      for (int j = 0; j <= i; ++j) blocks[v](i, j) = blocks[v](j, i) = values[next++];
-    }
-  }
+  for (const Index v : unknown_nodes_) blocks[v] = found[variable_[v]].first;
   return blocks;
 }
 
-std::vector<double> RangeInformation::predicted_variances() const {
+std::vector<double> RangeInformation::predicted_variances() {
   // Beyond so many variances a range is hopeless, however well its ends are known.
   constexpr double kHopeless = 100.0;
-  const auto matrix = regularised(kRegularisation);
-  const auto blocks = diagonal_blocks(matrix);
+  factorise(kRegularisation);
+  const auto blocks = diagonal_blocks();
   const auto own_variance = [&](Index node, const Point& u) {
-    return row(node) < 0 ? 0.0 : u.dot(blocks[node] * u);
+    return variable_[node] < 0 ? 0.0 : u.dot(blocks[node] * u);
   };
   std::vector<double> variances(problem_.ranges.size(), 0.0);
   std::vector<std::size_t> exact;
@@ -211,10 +225,10 @@ std::vector<double> RangeInformation::predicted_variances() const {
     const Point u = direction(range.from, range.to);
     const double a = own_variance(range.from, u);
     const double b = own_variance(range.to, u);
-    // Exact where one end is known. Else a bound, which keeps hopeless ranges between
-    // far nodes out of the pattern of the factorisation.
+    // Exact where one end is known. Else a bound, which saves looking at both ends of a
+    // hopeless range together.
     variances[k] = std::pow(std::sqrt(a) + std::sqrt(b), 2);
-    if (row(range.from) < 0 || row(range.to) < 0) continue;
+    if (!between_unknowns(k)) continue;
     const double own = 1.0 / information(k);
     const bool hopeless =
         unit_weights_ || std::pow(residual(k), 2) > kHopeless * (variances[k] + own);
@@ -223,36 +237,26 @@ std::vector<double> RangeInformation::predicted_variances() const {
       variances[k] = a + b;
     }
   }
-  subtract_cross_terms(matrix, exact, variances);
+  subtract_cross_terms(exact, variances);
   return variances;
 }
 
 // Takes twice u' C_ab u off the variances of the ranges in `exact`.
-void RangeInformation::subtract_cross_terms(const spectral::SparseMatrix& matrix,
-                                            const std::vector<std::size_t>& exact,
+void RangeInformation::subtract_cross_terms(const std::vector<std::size_t>& exact,
                                             std::vector<double>& variances) const {
-  const int d = problem_.dimension;
-  std::vector<spectral::VertexPair> wanted;
+  Pairs wanted;
   for (const auto k : exact) {
-    const auto& range = problem_.ranges[k];
-    for (int i = 0; i < d; ++i) {
-      for (int j = 0; j < d; ++j) wanted.push_back({row(range.from) + i, row(range.to) + j});
-    }
+    wanted.emplace_back(variable_[problem_.ranges[k].from], variable_[problem_.ranges[k].to]);
   }
-  const auto values = spectral::inverse_entries(matrix, wanted).values;
-  std::size_t next = 0;
-  for (const auto k : exact) {
-    const auto& range = problem_.ranges[k];
-    const Point u = direction(range.from, range.to);
-    double cross = 0.0;
-    for (int i = 0; i < d; ++i) {
-      for (int j = 0; j < d; ++j) cross += u[i] * u[j] * values[next++];
-    }
-    variances[k] = std::max(0.0, variances[k] - 2.0 * cross);
+  const auto found = pair_blocks(matrix_, wanted);
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    const auto k = exact[i];
+    const Point u = direction(problem_.ranges[k].from, problem_.ranges[k].to);
+    variances[k] = std::max(0.0, variances[k] - 2.0 * u.dot(found[i].cross * u));
   }
 }
 
-std::vector<RangeCheck> RangeInformation::check_ranges() const {
+std::vector<RangeCheck> RangeInformation::check_ranges() {
   const auto variances = predicted_variances();
   std::vector<RangeCheck> checks(problem_.ranges.size());
   for (std::size_t k = 0; k < checks.size(); ++k) {
@@ -272,15 +276,14 @@ std::vector<RangeCheck> RangeInformation::check_ranges() const {
   return checks;
 }
 
-std::vector<Eigen::MatrixXd> RangeInformation::covariances() const {
-  const auto matrix = regularised(kRegularisation);
-  auto blocks = diagonal_blocks(matrix);
+std::vector<Eigen::MatrixXd> RangeInformation::covariances() {
+  factorise(kRegularisation);
+  auto blocks = diagonal_blocks();
   if (problem_.anchored() || unknown_nodes_.empty()) return blocks;
   // C+ = P C P with P = I - G G', G being the orthonormal rigid motions.
   const int d = problem_.dimension;
   const Eigen::MatrixXd motions = rigid_motions(unknown_nodes_);
-  const Eigen::SimplicialLDLT<spectral::SparseMatrix, Eigen::Lower> factor(matrix);
-  const Eigen::MatrixXd moved = factor.solve(motions);        // C G
+  const Eigen::MatrixXd moved = matrix_.solve(motions);       // C G
   const Eigen::MatrixXd inner = motions.transpose() * moved;  // G' C G
   for (std::size_t k = 0; k < unknown_nodes_.size(); ++k) {
     const auto g = motions.middleRows(static_cast<Eigen::Index>(k) * d, d);
@@ -291,15 +294,17 @@ std::vector<Eigen::MatrixXd> RangeInformation::covariances() const {
   return blocks;
 }
 
-std::vector<bool> RangeInformation::floppy_nodes() const {
+std::vector<bool> RangeInformation::floppy_nodes() {
   // Where a free motion reaches, the inverse grows as 1 / regularisation.
   constexpr double kFine = 1e-10;
   constexpr double kCoarse = 1e-9;
   constexpr double kGrowth = 2.0;  // between none (1) and full (10)
   std::vector<bool> floppy(problem_.nodes, false);
   if (unknown_nodes_.empty()) return floppy;
-  const auto fine = diagonal_blocks(regularised(kFine));
-  const auto coarse = diagonal_blocks(regularised(kCoarse));
+  factorise(kFine);
+  const auto fine = diagonal_blocks();
+  factorise(kCoarse);
+  const auto coarse = diagonal_blocks();
   for (const Index v : unknown_nodes_) {
     floppy[v] = fine[v].trace() > kGrowth * coarse[v].trace();
   }

@@ -1,10 +1,11 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "isotherm/spectral/sparse/inverse_entries.hpp"
+#include "isotherm/spectral/sparse/block_cholesky.hpp"
 #include "localize/problem/range_problem.hpp"
 #include "localize/problem/small_network.hpp"
 
@@ -37,31 +38,33 @@ class RangeInformation {
   RangeInformation(const RangeProblem& problem, const std::vector<bool>& use,
                    const Placement& placement, bool unit_weights = false);
 
-  Index unknowns() const { return static_cast<Index>(matrix_.rows()); }
+  Index unknowns() const { return static_cast<Index>(matrix_.size()); }
 
-  /// Leave-one-out tests of all ranges. Two selected inversions. @throws NumericalError
-  std::vector<RangeCheck> check_ranges() const;
+  /// Leave-one-out tests of all ranges. One factorisation. @throws NumericalError
+  std::vector<RangeCheck> check_ranges();
 
   /// d x d a node, empty where not placed or an anchor. Without anchors those of the
   /// inner constraints: the covariance of the shape, of minimal trace.
-  std::vector<Eigen::MatrixXd> covariances() const;
+  std::vector<Eigen::MatrixXd> covariances();
 
   /// Which unknown nodes can move without changing a range (one a node; false for
   /// those that are no unknowns), by how the inverse grows as a regularisation falls.
-  std::vector<bool> floppy_nodes() const;
+  std::vector<bool> floppy_nodes();
 
  private:
-  Index row(Index node) const { return first_row_[node]; }
+  using Pairs = std::vector<std::pair<Index, Index>>;
+
   Point direction(Index from, Index to) const;
-  void hold_frame(std::vector<Eigen::Triplet<double, Index>>& entries) const;
+  void add_ranges();
+  void hold_frame(const std::vector<Index>& nodes, std::size_t first_pair);
   std::vector<Index> frame_nodes() const;
   Eigen::MatrixXd rigid_motions(const std::vector<Index>& nodes) const;
-  spectral::SparseMatrix regularised(double relative) const;
-  std::vector<Eigen::MatrixXd> diagonal_blocks(const spectral::SparseMatrix& matrix) const;
-  std::vector<double> predicted_variances() const;
-  void subtract_cross_terms(const spectral::SparseMatrix& matrix,
-                            const std::vector<std::size_t>& exact,
+  void factorise(double regularisation);
+  std::vector<Eigen::MatrixXd> diagonal_blocks() const;
+  std::vector<double> predicted_variances();
+  void subtract_cross_terms(const std::vector<std::size_t>& exact,
                             std::vector<double>& variances) const;
+  bool between_unknowns(std::size_t k) const;
   bool between_placed(std::size_t k) const;
   double residual(std::size_t k) const;  // measured less predicted
   double information(std::size_t k) const;
@@ -70,9 +73,9 @@ class RangeInformation {
   const std::vector<bool>& use_;
   const Placement& placement_;
   bool unit_weights_;
-  std::vector<Index> first_row_;  // node -> first row, -1 if it is no unknown
+  std::vector<Index> variable_;  // node -> its block, -1 if it is no unknown
   std::vector<Index> unknown_nodes_;
-  spectral::SparseMatrix matrix_;  // lower triangle
+  spectral::BlockCholesky matrix_;
 };
 
 }  // namespace isotherm::network::detail

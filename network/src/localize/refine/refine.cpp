@@ -1,62 +1,50 @@
 #include "localize/refine/refine.hpp"
 
 #include <cmath>
+#include <optional>
 #include <utility>
 
-#include <Eigen/CholmodSupport>
-
 #include "isotherm/base/error.hpp"
-#include "localize/problem/damped_step.hpp"
+#include "isotherm/spectral/sparse/damped_step.hpp"
+#include "localize/problem/geman_mcclure.hpp"
 #include "localize/problem/small_network.hpp"
 
 namespace isotherm::network::detail {
 namespace {
-
-using Factor = Eigen::CholmodDecomposition<spectral::SparseMatrix, Eigen::Lower>;
 
 // The springs as a damped least-squares problem in the free nodes.
 class SparseSystem {
  public:
   SparseSystem(const RangeProblem& problem, const std::vector<Spring>& springs,
                Placement& placement)
-      : problem_(problem), placement_(placement) {
-    factor_.cholmod().print = 0;
-    first_row_.assign(problem.nodes, -1);
-    for (const auto& spring : springs) {
-      if (!placement.placed[spring.from] || !placement.placed[spring.to]) continue;
-      const bool from_free = number(spring.from);
-      const bool to_free = number(spring.to);
-      if (from_free || to_free) springs_.push_back(spring);
-    }
-  }
+      : problem_(problem),
+        placement_(placement),
+        variable_(problem.nodes, -1),
+        matrix_(pattern(springs)),
+        gradient_(matrix_.size()) {}
 
-  Index unknowns() const { return unknowns_; }
+  Eigen::Index unknowns() const { return matrix_.size(); }
 
   bool linearise() {
-    entries_.clear();
-    gradient_.setZero(unknowns_);
-    for (const auto& spring : springs_) add(spring);
-    matrix_.resize(unknowns_, unknowns_);
-    matrix_.setFromTriplets(entries_.begin(), entries_.end());
-    const double scale = matrix_.diagonal().mean();
-    if (!(scale > 0.0)) return false;
-    scale_ = scale;
-    if (!analysed_) factor_.analyzePattern(matrix_);
-    analysed_ = true;
-    return true;
+    matrix_.clear();
+    gradient_.setZero();
+    std::size_t pair = 0;
+    for (const auto& spring : springs_) add(spring, pair);
+    scale_ = matrix_.diagonal().mean();
+    return scale_ > 0.0;
   }
 
-  bool move(double damping) {
-    factor_.setShift(damping * scale_);
-    factor_.factorize(matrix_);
-    if (factor_.info() != Eigen::Success) return false;
-    step_ = factor_.solve(-gradient_);
+  std::optional<double> move(double damping) {
+    if (!matrix_.factorise(Eigen::VectorXd::Constant(unknowns(), damping * scale_))) {
+      return std::nullopt;
+    }
+    step_ = matrix_.solve(-gradient_);
     before_ = placement_.positions;
     const int d = problem_.dimension;
     for (Index v = 0; v < problem_.nodes; ++v) {
-      if (first_row_[v] >= 0) placement_.positions.col(v) += step_.segment(first_row_[v], d);
+      if (variable_[v] >= 0) placement_.positions.col(v) += step_.segment(variable_[v] * d, d);
     }
-    return true;
+    return -step_.dot(gradient_);
   }
 
   void take_back() { placement_.positions = before_; }
@@ -79,14 +67,22 @@ class SparseSystem {
     GemanMcClure kernel;
   };
 
-  // Gives a node its rows; false for an anchor.
-  bool number(Index node) {
-    if (problem_.is_anchor[node]) return false;
-    if (first_row_[node] < 0) {
-      first_row_[node] = unknowns_;
-      unknowns_ += problem_.dimension;
+  // Numbers the free nodes of the springs between placed ones.
+  spectral::BlockCholesky pattern(const std::vector<Spring>& springs) {
+    Index count = 0;
+    std::vector<std::pair<Index, Index>> pairs;
+    for (const auto& spring : springs) {
+      if (!placement_.placed[spring.from] || !placement_.placed[spring.to]) continue;
+      for (const Index node : {spring.from, spring.to}) {
+        if (!problem_.is_anchor[node] && variable_[node] < 0) variable_[node] = count++;
+      }
+      const Index from = variable_[spring.from];
+      const Index to = variable_[spring.to];
+      if (from < 0 && to < 0) continue;
+      springs_.push_back(spring);
+      if (from >= 0 && to >= 0) pairs.emplace_back(from, to);
     }
-    return true;
+    return {problem_.dimension, count, pairs};
   }
 
   Term term(const Spring& spring) const {
@@ -101,42 +97,33 @@ class SparseSystem {
             {residual > 0.0 ? spring.width_apart : spring.width_close}};
   }
 
-  void add(const Spring& spring) {
+  void add(const Spring& spring, std::size_t& pair) {
     const auto [slope, residual, kernel] = term(spring);
     const double weight = kernel.weight(residual * residual);
     const Block block = weight * slope * slope.transpose();
     const int d = problem_.dimension;
-    const Index ends[] = {first_row_[spring.from], first_row_[spring.to]};
-    for (int a = 0; a < 2; ++a) {
-      if (ends[a] < 0) continue;
-      gradient_.segment(ends[a], d) += (a == 0 ? weight : -weight) * residual * slope;
-      for (int b = 0; b < 2; ++b) {
-        if (ends[b] >= 0) add_block(ends[a], ends[b], a == b ? 1.0 : -1.0, block);
-      }
+    const Index from = variable_[spring.from];
+    const Index to = variable_[spring.to];
+    if (from >= 0) {
+      gradient_.segment(from * d, d) += weight * residual * slope;
+      matrix_.add_diagonal(from, block);
     }
-  }
-
-  void add_block(Index row, Index column, double sign, const Block& block) {
-    for (int i = 0; i < problem_.dimension; ++i) {
-      for (int j = 0; j < problem_.dimension; ++j) {
-        if (row + i >= column + j) entries_.emplace_back(row + i, column + j, sign * block(i, j));
-      }
+    if (to >= 0) {
+      gradient_.segment(to * d, d) -= weight * residual * slope;
+      matrix_.add_diagonal(to, block);
     }
+    if (from >= 0 && to >= 0) matrix_.add_pair(pair++, -block);
   }
 
   const RangeProblem& problem_;
   Placement& placement_;
-  std::vector<Index> first_row_;  // node -> first row, -1 if it does not move
+  std::vector<Index> variable_;  // a node's block, or -1 if it does not move
   std::vector<Spring> springs_;
-  Index unknowns_ = 0;
-  std::vector<Eigen::Triplet<double, Index>> entries_;
-  spectral::SparseMatrix matrix_;  // lower triangle
+  spectral::BlockCholesky matrix_;
   Eigen::VectorXd gradient_;
   Eigen::VectorXd step_;
   Eigen::MatrixXd before_;
   double scale_ = 1.0;
-  bool analysed_ = false;
-  Factor factor_;
 };
 
 }  // namespace
@@ -166,7 +153,7 @@ RefineOutcome refine(const RangeProblem& problem, const std::vector<Spring>& spr
                             static_cast<std::uint64_t>(options.max_iterations)};
     if (options.progress && !options.progress(progress)) throw Cancelled();
     const double before = cost;
-    const bool moved = damped_step(system, damping, cost);
+    const bool moved = spectral::damped_step(system, damping, cost);
     if (!moved || before - cost <= options.still * before || system.largest_step() <= still_step) {
       return {k + 1, true};
     }

@@ -141,6 +141,8 @@ std::vector<PairCovariance<Dof>> pair_covariances(const BlockCholesky& factor,
   return PairInversion<Dof>(factor, pairs).run();
 }
 
+template std::vector<PairCovariance<2>> pair_covariances(const BlockCholesky&,
+                                                         std::span<const std::pair<Index, Index>>);
 template std::vector<PairCovariance<3>> pair_covariances(const BlockCholesky&,
                                                          std::span<const std::pair<Index, Index>>);
 template std::vector<PairCovariance<6>> pair_covariances(const BlockCholesky&,

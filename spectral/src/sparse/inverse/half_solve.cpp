@@ -65,6 +65,7 @@ void HalfSolve<Dof>::solve(Index front) {
   solve_lower_from_right(L.topRows(L.cols()), own);
 }
 
+template class HalfSolve<2>;
 template class HalfSolve<3>;
 template class HalfSolve<6>;
 

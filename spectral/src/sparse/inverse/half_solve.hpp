@@ -45,6 +45,7 @@ class HalfSolve {
   Eigen::MatrixXd above_;  // X_R
 };
 
+extern template class HalfSolve<2>;
 extern template class HalfSolve<3>;
 extern template class HalfSolve<6>;
 

@@ -62,6 +62,7 @@ void Remainders<Dof>::carry_up(Index front, Group group) {
   }
 }
 
+template class Remainders<2>;
 template class Remainders<3>;
 template class Remainders<6>;
 

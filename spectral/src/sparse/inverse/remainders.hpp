@@ -49,6 +49,7 @@ class Remainders {
   Eigen::MatrixXd columns_;
 };
 
+extern template class Remainders<2>;
 extern template class Remainders<3>;
 extern template class Remainders<6>;
 

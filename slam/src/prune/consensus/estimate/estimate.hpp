@@ -1,10 +1,10 @@
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "isotherm/spectral/sparse/block_cholesky.hpp"
+#include "optimize/normal_equations.hpp"
 #include "prune/consensus/estimate/reduced_graph.hpp"
 
 namespace isotherm::slam::detail {
@@ -62,23 +62,15 @@ class Estimate {
   Index component_count() const noexcept { return component_count_; }
 
  private:
-  void join_components(const std::vector<bool>& accepted);
-  void hold_one_pose_each();
-  void lay_out(const std::vector<bool>& accepted);
-  Eigen::VectorXd linearise(const CovarianceScale& scale);
-  void add_link(const Link<Pose>& link, double scale, std::ptrdiff_t pair, Eigen::VectorXd& rhs);
-  void retract(const Eigen::VectorXd& step);
+  PoseGraph<Pose> used_links(const std::vector<bool>& accepted) const;
+  void join_components(const PoseGraph<Pose>& used);
 
   const ReducedGraph<Pose>& graph_;
   std::vector<Pose> poses_;
   std::vector<Index> component_;
   Index component_count_ = 0;
-  std::vector<Index> variable_;  // a node's block, or -1 where it is held
-  Index variable_count_ = 0;
-  std::vector<bool> laid_out_for_;  // loops that the rest belongs to
-  std::vector<Index> active_loops_;
-  std::vector<std::ptrdiff_t> pair_of_;  // steps, then active loops; -1 without a block
-  std::unique_ptr<spectral::BlockCholesky> factor_;
+  std::vector<bool> laid_out_for_;  // loops that the equations hold, after all steps
+  std::optional<NormalEquations<Pose>> equations_;
 };
 
 /// The part of log(T_measured^-1 T) that changes with T: J with

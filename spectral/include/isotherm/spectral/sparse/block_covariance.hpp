@@ -33,6 +33,7 @@ struct PairCovariance {
 /// All pairs of neighbours together cost about two factorisations; a pair whose
 /// branches meet near the root costs a triangular solve along them.
 /// Runs on one thread: dense kernels of a serial BLAS may not be called from several.
+/// `Dof`, of 2, 3 and 6, is the factor's block size.
 /// @throws InvalidArgument if the factor is not supernodal
 template <int Dof>
 std::vector<PairCovariance<Dof>> pair_covariances(const BlockCholesky& factor,
