@@ -142,10 +142,12 @@ CholmodFactor::CholmodFactor(const LowerTriangle& pattern, FactorKind kind,
   auto& common = impl_->common;
   impl_->kind = kind;
   common.supernodal = storage(kind);
-  // Dense kernels pay only where blocks of columns are wide: in the plane they
-  // rarely are, and column by column is twice as fast.
-  common.supernodal_switch = 120.0;
-  common.final_ll = kind == FactorKind::symmetric ? 0 : 1;  // LDL' accepts what is indefinite
+  const bool accepts_indefinite =
+      kind == FactorKind::symmetric || kind == FactorKind::known_definite;
+  common.final_ll = accepts_indefinite ? 0 : 1;
+  // Dense kernels pay only where blocks of columns are wide: in pose graphs of the plane
+  // they rarely are, and column by column is twice as fast.
+  if (kind == FactorKind::positive_definite) common.supernodal_switch = 120.0;
   cholmod_sparse view = view_of(pattern);
   if (order.empty()) {
     impl_->factor = cholmod_analyze(&view, &common);
@@ -210,7 +212,7 @@ double CholmodFactor::log_determinant() const {
   impl_->check_usable();
   double sum = 0.0;
   for (const double pivot : impl_->pivots()) sum += std::log(pivot);
-  return impl_->kind == FactorKind::symmetric ? sum : 2.0 * sum;
+  return impl_->factor->is_ll ? 2.0 * sum : sum;
 }
 
 Index CholmodFactor::negative_pivots() const {

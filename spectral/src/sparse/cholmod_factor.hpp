@@ -33,6 +33,7 @@ struct Supernodes {
 
 enum class FactorKind {
   positive_definite,  ///< LL' in whatever form CHOLMOD takes least time for
+  known_definite,     ///< the same, but LDL' by columns, which no rounded pivot breaks down
   supernodal,         ///< LL' by dense blocks of columns, which are found beforehand
   symmetric,          ///< LDL' without pivoting; may be indefinite
 };

@@ -58,8 +58,8 @@ TEST(CholmodFactor, SolvesAndCountsAsADenseSolverDoes) {
   const Eigen::MatrixXd whole = dense(lower);
   const Eigen::MatrixXd rhs = Eigen::MatrixXd::Random(whole.rows(), 3);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(whole);
-  for (const auto kind :
-       {FactorKind::positive_definite, FactorKind::supernodal, FactorKind::symmetric}) {
+  for (const auto kind : {FactorKind::positive_definite, FactorKind::known_definite,
+                          FactorKind::supernodal, FactorKind::symmetric}) {
     CholmodFactor factor(lower, kind);
     EXPECT_LT((whole * factor.solve(rhs) - rhs).norm(), 1e-11);
     Eigen::VectorXd x = rhs.col(0);

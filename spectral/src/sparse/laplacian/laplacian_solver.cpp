@@ -43,7 +43,7 @@ LaplacianSolver::LaplacianSolver(const Laplacian& laplacian) : impl_(std::make_u
     impl_->scaling = laplacian.degrees().cwiseSqrt();
   impl_->grounded = grounded_combinatorial(laplacian, impl_->scaling);
   if (impl_->grounded.lower.rows() > 0) {
-    impl_->factor.emplace(impl_->grounded.lower, detail::FactorKind::positive_definite);
+    impl_->factor.emplace(impl_->grounded.lower, detail::FactorKind::known_definite);
   }
   impl_->reduced.resize(impl_->grounded.lower.rows());
 }
