@@ -6,5 +6,5 @@ cd "$(dirname "$0")/.."
 
 scripts/install-deps.sh --tests
 scripts/viewer-env.sh
-scripts/build.sh dev
-ctest --preset dev "$@"
+scripts/build.sh test
+ctest --preset test "$@"

@@ -4,20 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include "isotherm_test/parse_error.hpp"
+
 namespace isotherm {
 namespace {
 
-CsvReader csv(std::string_view text) { return CsvReader(TextReader("f.csv", text)); }
+using isotherm_test::message_of;
 
-template <class Action>
-std::string message_of(const Action& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
+CsvReader csv(std::string_view text) { return CsvReader(TextReader("f.csv", text)); }
 
 TEST(CsvReader, FindsColumnsByName) {
   auto reader = csv("# made by hand\nedge, from ,verdict\n\n3,7,keep\r\n4, 8 ,prune");

@@ -9,22 +9,15 @@
 #include <gtest/gtest.h>
 
 #include "isotherm/base/text_writer.hpp"
+#include "isotherm_test/parse_error.hpp"
 #include "isotherm_test/temporary.hpp"
 
 namespace isotherm {
 namespace {
 
+using isotherm_test::message_of;
 using isotherm_test::TemporaryFolder;
 using isotherm_test::write_file;
-
-std::string message_of(const auto& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 TEST(TextReader, SplitsLinesAndTokens) {
   TextReader reader("f", "a\t b  12\r\n\n  \n-1.5e+003 x");

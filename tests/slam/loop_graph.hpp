@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "isotherm/base/random.hpp"
@@ -7,6 +8,17 @@
 #include "isotherm_test/random_graphs.hpp"
 
 namespace isotherm_test {
+
+/// The largest distance of two poses at the same place of both lists; 1e300 for lists of
+/// different lengths.
+template <class Pose>
+double worst_difference(const std::vector<Pose>& a, const std::vector<Pose>& b) {
+  double worst = a.size() == b.size() ? 0.0 : 1e300;
+  for (std::size_t v = 0; v < std::min(a.size(), b.size()); ++v) {
+    worst = std::max(worst, (a[v].inverse() * b[v]).log().norm());
+  }
+  return worst;
+}
 
 /// A chain with loops, and the poses that made it.
 template <class Pose>

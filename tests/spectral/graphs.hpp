@@ -17,6 +17,16 @@ using isotherm::spectral::Index;
 using isotherm::spectral::WeightedEdge;
 using isotherm::spectral::WeightedGraph;
 
+/// A mark at every edge.
+inline std::vector<bool> all_edges(const WeightedGraph& graph) {
+  return std::vector<bool>(graph.edges().size(), true);
+}
+
+/// The same worth for every edge.
+inline std::vector<double> equal_worth(const WeightedGraph& graph, double value = 1.0) {
+  return std::vector<double>(graph.edges().size(), value);
+}
+
 inline WeightedGraph path_graph(Index n, double weight = 1.0) {
   std::vector<WeightedEdge> edges;
   for (Index v = 0; v + 1 < n; ++v) edges.push_back({v, v + 1, weight});

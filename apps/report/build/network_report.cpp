@@ -103,7 +103,7 @@ std::string words_of_nodes(const LocalizeResult& result) {
   return "Nodes: " + (text.empty() ? "none" : text) + ".";
 }
 
-std::string words_of_certainty(const LocalizeResult& result) {
+std::string words_of_range_certainty(const LocalizeResult& result) {
   return fmt::format(
       "{} of {} scores are within a factor of two of their threshold. Standard deviations of "
       "ranges were multiplied by {:.3g} to fit the residuals; chi-squared is {:.4g} with {} "
@@ -152,7 +152,7 @@ Report network_report(const RangeNetwork& network, const LocalizeResult& result,
        fmt::format("Method {} {}, in {} rounds and {:.2f} s.", enum_name(run.options.method),
                    counts_in_words(result.verdicts, report.nouns), result.rounds, result.seconds)},
       {"The result", words},
-      {"How sure", words_of_certainty(result)},
+      {"How sure", words_of_range_certainty(result)},
       {"Options", options_in_words(report.options, options_to_json(LocalizeOptions{}))}};
   if (!result.anchored)
     report.warnings.push_back("no anchors: positions are known up to an isometry");

@@ -13,7 +13,7 @@ template <class Pose>
 constexpr std::string_view kEdgeTag = Pose::kDim == 2 ? "EDGE_SE2" : "EDGE_SE3:QUAT";
 
 template <class Pose>
-void write_graph(OutputFile& file, const PoseGraph<Pose>& graph) {
+void write_g2o_records(OutputFile& file, const PoseGraph<Pose>& graph) {
   check_poses(graph);
   RecordWriter line(file);
   for (std::size_t v = 0; v < graph.poses.size(); ++v) {
@@ -30,13 +30,13 @@ void write_graph(OutputFile& file, const PoseGraph<Pose>& graph) {
 
 void write_g2o(const std::string& path, const PoseGraph<Pose2>& graph) {
   OutputFile file(path);
-  write_graph(file, graph);
+  write_g2o_records(file, graph);
   file.commit();
 }
 
 void write_g2o(const std::string& path, const PoseGraph<Pose3>& graph) {
   OutputFile file(path);
-  write_graph(file, graph);
+  write_g2o_records(file, graph);
   file.commit();
 }
 
@@ -46,7 +46,7 @@ void write_g2o(const std::string& path, const AnyPoseGraph& graph) {
 
 void write_g2o(const std::string& path, const PoseGraphFile& read) {
   OutputFile file(path);
-  std::visit([&](const auto& graph) { write_graph(file, graph); }, read.graph);
+  std::visit([&](const auto& graph) { write_g2o_records(file, graph); }, read.graph);
   for (const auto& line : read.other_lines) {
     file.write(line);
     file.write("\n");

@@ -64,9 +64,9 @@ constexpr std::size_t kMostKeptBytes = std::size_t{64} << 20;
 constexpr std::size_t kLongestTag = 64;
 constexpr std::size_t kMostTags = 1000;
 
-class Reader {
+class PoseGraphReader {
  public:
-  Reader(TextReader& text, FileFormat format, const ReadOptions& options)
+  PoseGraphReader(TextReader& text, FileFormat format, const ReadOptions& options)
       : text_(text),
         options_(options),
         fields_(text, options, file_.report),
@@ -309,7 +309,7 @@ PoseGraphFile read_pose_graph(TextReader& reader, const ReadOptions& options) {
 PoseGraphFile read_pose_graph(TextReader& reader, FileFormat format, const ReadOptions& options) {
   options.validate();
   if (format == FileFormat::places) return read_places(reader);
-  return Reader(reader, format, options).run();
+  return PoseGraphReader(reader, format, options).run();
 }
 
 PoseGraphFile read_pose_graph(const std::string& path, const ReadOptions& options) {

@@ -33,7 +33,7 @@ void write_information(RecordWriter& line, const Pose2::Matrix& m) {
 void write_information(RecordWriter& line, const Pose3::Matrix& m) { line.upper_triangle(m); }
 
 template <class Pose>
-void write_graph(OutputFile& file, const PoseGraph<Pose>& graph) {
+void write_toro_records(OutputFile& file, const PoseGraph<Pose>& graph) {
   check_poses(graph);
   RecordWriter line(file);
   for (std::size_t v = 0; v < graph.poses.size(); ++v) {
@@ -54,7 +54,7 @@ void write_graph(OutputFile& file, const PoseGraph<Pose>& graph) {
 
 void write_toro(const std::string& path, const AnyPoseGraph& any) {
   OutputFile file(path);
-  std::visit([&](const auto& graph) { write_graph(file, graph); }, any);
+  std::visit([&](const auto& graph) { write_toro_records(file, graph); }, any);
   file.commit();
 }
 

@@ -11,9 +11,9 @@
 namespace isotherm::slam {
 namespace {
 
-class Reader {
+class TrajectoryReader {
  public:
-  Reader(TextReader& text, FileFormat format, const ReadOptions& options, ReadReport& report)
+  TrajectoryReader(TextReader& text, FileFormat format, const ReadOptions& options, ReadReport& report)
       : text_(text), format_(format), report_(report), fields_(text, options, report) {}
 
   AnyTrajectory run() {
@@ -162,7 +162,7 @@ TrajectoryFile read_trajectory(TextReader& reader, FileFormat format, const Read
                          "; expected a trajectory in TUM, KITTI or EuRoC format, rows of time "
                          "x y theta, or a pose graph");
   }
-  file.trajectory = Reader(reader, format, options, file.report).run();
+  file.trajectory = TrajectoryReader(reader, format, options, file.report).run();
   file.report.lines = reader.line_number();
   if (file.report.records["pose"] == 0) {
     throw ParseError({reader.path(), 0, 0}, "", "no pose");

@@ -8,8 +8,6 @@
 namespace isotherm::spectral::detail {
 namespace {
 
-constexpr double kLargestNorm = 2.0;  // squared, of a target's vector
-
 /// What rounding in the Lanczos process may have done: a displacement of the
 /// spectrum by a few units in the last place of the norm.
 double lanczos_rounding(int steps, double scale, double norm) {

@@ -5,6 +5,7 @@
 namespace isotherm::spectral::detail {
 
 constexpr Index kNoVertex = -1;
+constexpr double kLargestNorm = 2.0;  ///< squared, of a target's vector
 
 /// An edge that is to be thought away: `weight` is its own, `remaining` that of
 /// its parallel edges together.
@@ -27,7 +28,7 @@ struct HeatTarget {
 
   bool single() const { return to == kNoVertex; }
   bool trivial() const { return from == to; }
-  double squared_norm() const { return single() ? 1.0 : 2.0; }
+  double squared_norm() const { return single() ? 1.0 : kLargestNorm; }
 };
 
 }  // namespace isotherm::spectral::detail

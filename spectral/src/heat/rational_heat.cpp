@@ -12,7 +12,6 @@
 namespace isotherm::spectral::detail {
 namespace {
 
-constexpr double kLargestNorm = 2.0;  // squared, of a target's vector
 /// Share of the tolerance that the approximation may take; the rest is for rounding.
 constexpr double kApproximationShare = 0.9;
 

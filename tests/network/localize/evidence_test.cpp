@@ -3,22 +3,17 @@
 #include <gtest/gtest.h>
 
 #include "isotherm/base/random.hpp"
-#include "isotherm/base/statistics.hpp"
 #include "isotherm/network/simulate/simulate_network.hpp"
 #include "localize/evidence/crowd.hpp"
 #include "localize/evidence/multilateration.hpp"
 #include "localize/evidence/star.hpp"
 #include "localize/firm/hinge_parts.hpp"
 #include "network/localize/networks.hpp"
+#include "network/localize/range_problems.hpp"
 
 namespace isotherm::network::detail {
 namespace {
 
-const double kGate = chi_squared_quantile(0.999, 1);
-
-std::vector<bool> all_of(const RangeProblem& problem) {
-  return std::vector<bool>(problem.pairs.size(), true);
-}
 
 std::vector<Index> numbers(Index count) {
   std::vector<Index> nodes;

@@ -2,13 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "isotherm/base/statistics.hpp"
 #include "network/localize/networks.hpp"
+#include "network/localize/range_problems.hpp"
 
 namespace isotherm::network::detail {
 namespace {
 
-const double kGate = chi_squared_quantile(0.999, 1);
 
 /// Whether node 8 is firm at its place between eight anchors, of which it has ranges to `here`, if
 /// it has `elsewhere` more to nodes without a place.

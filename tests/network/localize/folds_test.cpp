@@ -2,15 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include "isotherm/base/statistics.hpp"
 #include "localize/fold/fold_trial.hpp"
 #include "localize/fold/open_folds.hpp"
 #include "network/localize/networks.hpp"
+#include "network/localize/range_problems.hpp"
 
 namespace isotherm::network::detail {
 namespace {
 
-const double kGate = chi_squared_quantile(0.999, 1);
 const Evidence kNoAbsence = {{}, {kGate, kGate}};
 const std::vector<Index> kAbove = {8, 9, 10, 11, 12};
 

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include "isotherm/base/statistics.hpp"
 #include "isotherm/geometry/points/point_alignment.hpp"
 #include "isotherm/network/simulate/simulate_network.hpp"
 #include "localize/evidence/agreement.hpp"
@@ -9,16 +8,12 @@
 #include "localize/problem/repeats.hpp"
 #include "localize/start/anchor_frame.hpp"
 #include "network/localize/networks.hpp"
+#include "network/localize/range_problems.hpp"
 
 namespace isotherm::network::detail {
 namespace {
 
-const double kGate = chi_squared_quantile(0.999, 1);
 const Evidence kNoEvidence = {{}, {kGate, kGate}};
-
-std::vector<bool> all_of(const RangeProblem& problem) {
-  return std::vector<bool>(problem.pairs.size(), true);
-}
 
 Eigen::MatrixXd six_points() {
   Eigen::MatrixXd points(2, 6);

@@ -3,20 +3,15 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include "isotherm/base/statistics.hpp"
 #include "isotherm/geometry/points/point_alignment.hpp"
 #include "isotherm/network/simulate/simulate_network.hpp"
 #include "localize/evidence/evidence.hpp"
 #include "network/localize/networks.hpp"
+#include "network/localize/range_problems.hpp"
 
 namespace isotherm::network::detail {
 namespace {
 
-const double kGate = chi_squared_quantile(0.999, 1);
-
-std::vector<bool> all_of(const RangeProblem& problem) {
-  return std::vector<bool>(problem.pairs.size(), true);
-}
 
 /// Part of the nodes that are nearer than `tolerance` to the truth after the best isometry.
 double share_near(const Placement& map, const Eigen::MatrixXd& truth, double tolerance) {

@@ -8,19 +8,19 @@
 namespace isotherm::slam {
 namespace {
 
-PoseGraphFile parse(const std::string& text) {
+PoseGraphFile parse_places(const std::string& text) {
   TextReader reader("f", text);
   return read_pose_graph(reader);
 }
 
-std::string error_of(const std::string& text) {
-  return isotherm_test::parse_error_of([&] { parse(text); });
+std::string place_error(const std::string& text) {
+  return isotherm_test::parse_error_of([&] { parse_places(text); });
 }
 
 const std::string kStart = "odom2 0 0 0 0 0.01 0.01 0.04\n";
 
 TEST(ReadPlaces, VelocitiesBecomeOdometry) {
-  const auto file = parse(kStart + "odom2 0.5 2 0 0 0.01 0.04 0.25\nodom2 1 0 0 1 0.01 0.01 1\n");
+  const auto file = parse_places(kStart + "odom2 0.5 2 0 0 0.01 0.04 0.25\nodom2 1 0 0 1 0.01 0.01 1\n");
   const auto& graph = std::get<PoseGraph<Pose2>>(file.graph);
   ASSERT_EQ(graph.vertex_count(), 3);
   ASSERT_EQ(graph.constraint_count(), 2);
@@ -32,7 +32,7 @@ TEST(ReadPlaces, VelocitiesBecomeOdometry) {
 }
 
 TEST(ReadPlaces, RecognisedPlacesJoinTheNearestPoses) {
-  const auto file = parse(kStart +
+  const auto file = parse_places(kStart +
                           "odom2 1 1 0 0 1 1 1\nodom2 2 1 0 0 1 1 1\nodom2 3 1 0 0 1 1 1\n"
                           "loop 3.4 0.4 0.9\n");
   const auto& graph = std::get<PoseGraph<Pose2>>(file.graph);
@@ -45,14 +45,14 @@ TEST(ReadPlaces, RecognisedPlacesJoinTheNearestPoses) {
 }
 
 TEST(ReadPlaces, LocatesErrors) {
-  EXPECT_EQ(error_of("odom2 0 0 0 0 1 0 1\n"), "f:1:17: expected a variance > 0 (got '0')");
-  EXPECT_EQ(error_of(kStart + "odom2 0 0 0 0 1 1 1\n"),
+  EXPECT_EQ(place_error("odom2 0 0 0 0 1 0 1\n"), "f:1:17: expected a variance > 0 (got '0')");
+  EXPECT_EQ(place_error(kStart + "odom2 0 0 0 0 1 1 1\n"),
             "f:2:7: expected a later time stamp (got '0')");
-  EXPECT_EQ(error_of(kStart + "loop 0 9 0.5\n"), "f:2:6: no odometry within a second of this time");
-  EXPECT_EQ(error_of(kStart + "loop 0 0 1.5\n"),
+  EXPECT_EQ(place_error(kStart + "loop 0 9 0.5\n"), "f:2:6: no odometry within a second of this time");
+  EXPECT_EQ(place_error(kStart + "loop 0 0 1.5\n"),
             "f:2:10: expected a similarity in [0, 1] (got '1.5')");
-  EXPECT_EQ(error_of(kStart + "range2 1\n"), "f:2:1: expected odom2 or loop (got 'range2')");
-  EXPECT_EQ(error_of("loop 0 0 1\n"), "f: no odom2 line; expected velocities over time");
+  EXPECT_EQ(place_error(kStart + "range2 1\n"), "f:2:1: expected odom2 or loop (got 'range2')");
+  EXPECT_EQ(place_error("loop 0 0 1\n"), "f: no odom2 line; expected velocities over time");
 }
 
 TEST(ReadPlaces, HasTheCountsItsSourceStates) {

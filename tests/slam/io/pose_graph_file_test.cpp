@@ -22,21 +22,21 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Pair;
 
-PoseGraphFile parse(const std::string& text, bool strict = false) {
+PoseGraphFile parse_graph(const std::string& text, bool strict = false) {
   TextReader reader("f.g2o", text);
   return read_pose_graph(reader, {.strict = strict});
 }
 
 PoseGraph<Pose2> planar(const std::string& text) {
-  return std::get<PoseGraph<Pose2>>(parse(text).graph);
+  return std::get<PoseGraph<Pose2>>(parse_graph(text).graph);
 }
 
 PoseGraph<Pose3> spatial(const std::string& text) {
-  return std::get<PoseGraph<Pose3>>(parse(text).graph);
+  return std::get<PoseGraph<Pose3>>(parse_graph(text).graph);
 }
 
-std::string error_of(const std::string& text, bool strict = false) {
-  return isotherm_test::parse_error_of([&] { parse(text, strict); });
+std::string graph_error(const std::string& text, bool strict = false) {
+  return isotherm_test::parse_error_of([&] { parse_graph(text, strict); });
 }
 
 template <class Pose>
@@ -112,7 +112,7 @@ TEST(ReadPoseGraph, PlanarRecords) {
 // the matrix definite; the sum of every product was worked out by hand.
 TEST(ReadPoseGraph, EdgesWithoutTags) {
   const auto file =
-      parse("# from to x y theta\n0 1 1.5 0 0.5 4 1 2 5 3 6\n1 2 1 0 0 4 0 0 5 0 6\n");
+      parse_graph("# from to x y theta\n0 1 1.5 0 0.5 4 1 2 5 3 6\n1 2 1 0 0 4 0 0 5 0 6\n");
   EXPECT_EQ(file.report.format, "edge-rows");
   const auto& graph = std::get<PoseGraph<Pose2>>(file.graph);
   ASSERT_EQ(graph.constraint_count(), 2);
@@ -160,7 +160,7 @@ TEST(ReadPoseGraph, PlacesVerticesWithoutALine) {
       "EDGE_SE2 2 1 1 0 0 1 0 0 1 0 1\n"
       "EDGE_SE2 0 2 2 0 0 1 0 0 1 0 1\n"
       "EDGE_SE2 8 9 5 0 0 1 0 0 1 0 1\n";
-  const auto file = parse(text);
+  const auto file = parse_graph(text);
   const auto& graph = std::get<PoseGraph<Pose2>>(file.graph);
   ASSERT_THAT(graph.ids, ElementsAre(0, 1, 2, 8, 9));
   EXPECT_EQ(graph.poses[2].translation().x(), 3.0);
@@ -170,29 +170,29 @@ TEST(ReadPoseGraph, PlacesVerticesWithoutALine) {
   EXPECT_THAT(file.report.repairs, ElementsAre(Pair("vertex placed", 4)));
   EXPECT_EQ(to_string(file.report.diagnostics[0]),
             "f.g2o:3: vertex has no line of its own; placed by this edge (got '2')");
-  EXPECT_EQ(error_of(text, true),
+  EXPECT_EQ(graph_error(text, true),
             "f.g2o:3: vertex has no line of its own; placed by this edge (got '2')");
 }
 
 TEST(ReadPoseGraph, RepairsAnglesAndQuaternionsAndCounts) {
-  const auto planar_file = parse("VERTEX_SE2 0 0 0 7\nVERTEX_SE2 1 0 0 3.141593\n");
+  const auto planar_file = parse_graph("VERTEX_SE2 0 0 0 7\nVERTEX_SE2 1 0 0 3.141593\n");
   const auto& poses = std::get<PoseGraph<Pose2>>(planar_file.graph).poses;
   EXPECT_EQ(poses[0].angle(), wrap_angle(7));
   EXPECT_LT(poses[1].angle(), 0);
   EXPECT_THAT(planar_file.report.repairs, ElementsAre(Pair("angle wrapped", 1)));
   EXPECT_THAT(planar_file.report.notes, ElementsAre(Pair("angle rounded", 1)));
-  EXPECT_EQ(error_of("VERTEX_SE2 0 0 0 7\n", true),
+  EXPECT_EQ(graph_error("VERTEX_SE2 0 0 0 7\n", true),
             "f.g2o:1:18: angle outside [-pi, pi]; wrapped (got '7')");
 
   const auto file =
-      parse("VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1.001\nVERTEX_SE3:QUAT 1 0 0 0 0.6 0 0 0.800001\n");
+      parse_graph("VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1.001\nVERTEX_SE3:QUAT 1 0 0 0 0.6 0 0 0.800001\n");
   const auto& rotations = std::get<PoseGraph<Pose3>>(file.graph).poses;
   EXPECT_EQ(rotations[0].rotation().w(), 1.0);
   EXPECT_NEAR(rotations[1].rotation().norm(), 1.0, 1e-15);
   EXPECT_THAT(file.report.repairs, ElementsAre(Pair("quaternion normalised", 1)));
   EXPECT_THAT(file.report.notes, ElementsAre(Pair("quaternion rounded", 1)));
   expect_round_trip(file.graph);
-  EXPECT_EQ(error_of("VERTEX_SE3:QUAT 0 0 0 0 0 0 0 0.5\n"),
+  EXPECT_EQ(graph_error("VERTEX_SE3:QUAT 0 0 0 0 0 0 0 0.5\n"),
             "f.g2o:1:25: expected a unit quaternion, its norm is 0.5 (got '0 0 0 0.5')");
 }
 
@@ -204,7 +204,7 @@ TEST(ReadPoseGraph, ReplacesIndefiniteInformationByTheMedianOfItsKind) {
       "EDGE_SE2 3 4 1 0 0 1 2 0 1 0 1\n"
       "EDGE_SE2 0 4 1 0 0 -7 0 0 7 0 7\n"
       "EDGE_SE2 0 3 1 0 0 50 0 0 50 0 50\n";
-  const auto file = parse(text);
+  const auto file = parse_graph(text);
   const auto& constraints = std::get<PoseGraph<Pose2>>(file.graph).constraints;
   EXPECT_EQ(constraints[3].information, 4.0 * Eigen::Matrix3d::Identity());
   EXPECT_EQ(constraints[4].information, 50.0 * Eigen::Matrix3d::Identity());
@@ -212,14 +212,14 @@ TEST(ReadPoseGraph, ReplacesIndefiniteInformationByTheMedianOfItsKind) {
   EXPECT_EQ(to_string(file.report.diagnostics[0]),
             "f.g2o:4:20: information matrix of this odometry edge is not positive semi-definite; "
             "replaced by the median, from line 3 (got '1 2 0 1 0 1')");
-  EXPECT_THAT(error_of(text, true), testing::StartsWith("f.g2o:4:20: "));
-  EXPECT_EQ(error_of("EDGE_SE2 0 1 1 0 0 -1 0 0 1 0 1\n"),
+  EXPECT_THAT(graph_error(text, true), testing::StartsWith("f.g2o:4:20: "));
+  EXPECT_EQ(graph_error("EDGE_SE2 0 1 1 0 0 -1 0 0 1 0 1\n"),
             "f.g2o:1:20: information matrix is not positive semi-definite, and no edge has one "
             "that could stand in (got '-1 0 0 1 0 1')");
 }
 
 TEST(ReadPoseGraph, SingularInformationIsLeftAlone) {
-  const auto file = parse(
+  const auto file = parse_graph(
       "EDGE_SE2 0 1 1 0 0 1 1 0 1 0 0\n"
       "EDGE_SE2 1 2 1 0 0 0 0 0 0 0 0\n");
   EXPECT_THAT(file.report.repairs, IsEmpty());
@@ -228,24 +228,24 @@ TEST(ReadPoseGraph, SingularInformationIsLeftAlone) {
 
 TEST(ReadPoseGraph, SortsVerticesByIdAndRefusesRepeats) {
   const std::string text = "VERTEX_SE2 2 2 0 0\nVERTEX_SE2 1 1 0 0\n";
-  const auto file = parse(text);
+  const auto file = parse_graph(text);
   const auto& graph = std::get<PoseGraph<Pose2>>(file.graph);
   EXPECT_THAT(graph.ids, ElementsAre(1, 2));
   EXPECT_EQ(graph.poses[0].translation().x(), 1.0);
   EXPECT_EQ(to_string(file.report.diagnostics[0]),
             "f.g2o:2: vertex id out of place after 2; sorted by id (got '1')");
-  EXPECT_EQ(error_of("VERTEX_SE2 1 0 0 0\nVERTEX_SE2 2 0 0 0\nVERTEX_SE2 1 0 0 0\n"),
+  EXPECT_EQ(graph_error("VERTEX_SE2 1 0 0 0\nVERTEX_SE2 2 0 0 0\nVERTEX_SE2 1 0 0 0\n"),
             "f.g2o:3: vertex already given at line 1 (got '1')");
 }
 
 TEST(ReadPoseGraph, ToroRecords) {
-  const auto file = parse("VERTEX2 0 0 0 0\nVERTEX2 1 1 0 0\nEDGE2 0 1 1 0 0 10 1 20 30 2 3\n");
+  const auto file = parse_graph("VERTEX2 0 0 0 0\nVERTEX2 1 1 0 0\nEDGE2 0 1 1 0 0 10 1 20 30 2 3\n");
   EXPECT_EQ(file.report.format, "toro");
   Eigen::Matrix3d information;
   information << 10, 1, 2, 1, 20, 3, 2, 3, 30;
   EXPECT_EQ(std::get<PoseGraph<Pose2>>(file.graph).constraints[0].information, information);
 
-  const auto by_rows = parse("EDGE2 0 1 1 0 0 10 0 0 20 0 30\n");
+  const auto by_rows = parse_graph("EDGE2 0 1 1 0 0 10 0 0 20 0 30\n");
   EXPECT_EQ(std::get<PoseGraph<Pose2>>(by_rows.graph).constraints[0].information,
             Eigen::Matrix3d(Eigen::Vector3d(10, 20, 30).asDiagonal()));
   EXPECT_THAT(by_rows.report.repairs, ElementsAre(Pair("information reordered", 1)));
@@ -264,7 +264,7 @@ TEST(ReadPoseGraph, ToroRecords) {
 }
 
 TEST(ReadPoseGraph, PosesOfAPyfgFile) {
-  const auto file = parse(
+  const auto file = parse_graph(
       "VERTEX_SE2 10.5 A0 1 2 0.5\n"
       "VERTEX_SE2 11.5 A1 3 4 0.5\n"
       "VERTEX_XY L0 4 6\n"
@@ -278,7 +278,7 @@ TEST(ReadPoseGraph, PosesOfAPyfgFile) {
             Eigen::Matrix3d(Eigen::Vector3d(4, 4, 16).asDiagonal()));
   EXPECT_THAT(file.report.skipped, ElementsAre(Pair("EDGE_RANGE", 1), Pair("VERTEX_XY", 1)));
   EXPECT_THAT(file.other_lines, IsEmpty());
-  EXPECT_EQ(error_of("VERTEX_SE2 1 A0 0 0 0\nVERTEX_SE2 1 7 0 0 0\n"),
+  EXPECT_EQ(graph_error("VERTEX_SE2 1 A0 0 0 0\nVERTEX_SE2 1 7 0 0 0\n"),
             "f.g2o:2:14: expected a vertex id, a letter and a number below 2^56 (got '7')");
 }
 
@@ -288,7 +288,7 @@ TEST(ReadPoseGraph, KeepsWhatItDoesNotKnow) {
       "VERTEX_SE2 0 0 0 0\n"
       "VERTEX_XY 7 1 2\n"
       "EDGE_SE2_XY 0 7 1 2 1 0 1\n";
-  const auto file = parse(text);
+  const auto file = parse_graph(text);
   EXPECT_THAT(file.report.skipped, ElementsAre(Pair("EDGE_SE2_XY", 1), Pair("VERTEX_XY", 1)));
   EXPECT_THAT(file.report.records, ElementsAre(Pair("VERTEX_SE2", 1)));
   const TemporaryFolder folder;
@@ -306,23 +306,23 @@ TEST(ReadPoseGraph, KeysOf64Bits) {
 }
 
 TEST(ReadPoseGraph, LocatesErrors) {
-  EXPECT_EQ(error_of(""),
+  EXPECT_EQ(graph_error(""),
             "f.g2o: the file is empty; expected a pose graph in g2o, TORO or PyFG format");
-  EXPECT_EQ(error_of("# nothing\n\n"),
+  EXPECT_EQ(graph_error("# nothing\n\n"),
             "f.g2o: no vertex and no edge; expected a pose graph in g2o, TORO or PyFG format");
-  EXPECT_EQ(error_of("EDGE_SE2 0 1 1 0 0 1 0 0 1 0\n"),
+  EXPECT_EQ(graph_error("EDGE_SE2 0 1 1 0 0 1 0 0 1 0\n"),
             "f.g2o:1:29: expected an information entry, found the end of the line");
-  EXPECT_EQ(error_of("VERTEX_SE2 0 0 0 0\nEDGE_SE2 0 1 1 nan 0 1 0 0 1 0 1\n"),
+  EXPECT_EQ(graph_error("VERTEX_SE2 0 0 0 0\nEDGE_SE2 0 1 1 nan 0 1 0 0 1 0 1\n"),
             "f.g2o:2:16: expected y, a finite number (got 'nan')");
-  EXPECT_EQ(error_of("VERTEX_SE2 x 0 0 0\n"),
+  EXPECT_EQ(graph_error("VERTEX_SE2 x 0 0 0\n"),
             "f.g2o:1:12: expected a vertex id, an integer in [0, 2^64) (got 'x')");
-  EXPECT_EQ(error_of("VERTEX_SE2 0 0 0 0 0\n"),
+  EXPECT_EQ(graph_error("VERTEX_SE2 0 0 0 0 0\n"),
             "f.g2o:1:20: expected the end of the line (got '0')");
-  EXPECT_EQ(error_of("VERTEX_SE2 0 0 0 0\nFIX 3\n"),
+  EXPECT_EQ(graph_error("VERTEX_SE2 0 0 0 0\nFIX 3\n"),
             "f.g2o:2:5: fixed vertex does not exist (got '3')");
-  EXPECT_EQ(error_of("VERTEX_SE2 0 0 0 0\n0 1 2\n"),
+  EXPECT_EQ(graph_error("VERTEX_SE2 0 0 0 0\n0 1 2\n"),
             "f.g2o:2:1: expected a record tag such as VERTEX_SE2 or EDGE_SE3:QUAT (got '0')");
-  EXPECT_EQ(error_of("VERTEX_SE2 0 0 0 0\nVERTEX_SE3:QUAT 1 0 0 0 0 0 0 1\n"),
+  EXPECT_EQ(graph_error("VERTEX_SE2 0 0 0 0\nVERTEX_SE3:QUAT 1 0 0 0 0 0 0 1\n"),
             "f.g2o:2:1: spatial record in a file of planar poses (got 'VERTEX_SE3:QUAT')");
 }
 

@@ -19,21 +19,21 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Pair;
 
-TrajectoryFile parse(const std::string& text, bool strict = false) {
+TrajectoryFile parse_trajectory(const std::string& text, bool strict = false) {
   TextReader reader("f", text);
   return read_trajectory(reader, {.strict = strict});
 }
 
-Trajectory<Pose3> spatial(const std::string& text) {
-  return std::get<Trajectory<Pose3>>(parse(text).trajectory);
+Trajectory<Pose3> spatial_trajectory(const std::string& text) {
+  return std::get<Trajectory<Pose3>>(parse_trajectory(text).trajectory);
 }
 
-std::string error_of(const std::string& text) {
-  return isotherm_test::parse_error_of([&] { parse(text); });
+std::string trajectory_error(const std::string& text) {
+  return isotherm_test::parse_error_of([&] { parse_trajectory(text); });
 }
 
 TEST(ReadTrajectory, Tum) {
-  const auto file = parse("# time x y z qx qy qz qw\n1.5 1 2 3 0 0 0.6 0.8\n2.5 4 5 6 0 0 0 1\n");
+  const auto file = parse_trajectory("# time x y z qx qy qz qw\n1.5 1 2 3 0 0 0.6 0.8\n2.5 4 5 6 0 0 0 1\n");
   EXPECT_EQ(file.report.format, "tum");
   const auto& trajectory = std::get<Trajectory<Pose3>>(file.trajectory);
   EXPECT_THAT(trajectory.timestamps, ElementsAre(1.5, 2.5));
@@ -44,18 +44,18 @@ TEST(ReadTrajectory, Tum) {
 
 TEST(ReadTrajectory, KittiWithAndWithoutStamps) {
   const std::string quarter_turn = "0 -1 0 1 1 0 0 2 0 0 1 3";
-  const auto plain = spatial(quarter_turn + "\n" + quarter_turn);
+  const auto plain = spatial_trajectory(quarter_turn + "\n" + quarter_turn);
   EXPECT_THAT(plain.timestamps, IsEmpty());
   ASSERT_EQ(plain.poses.size(), 2u);
   EXPECT_EQ(plain.poses[1].translation(), Eigen::Vector3d(1, 2, 3));
   EXPECT_NEAR(plain.poses[1].rotation().z(), std::sqrt(0.5), 1e-15);
-  const auto stamped = spatial("0.1 " + quarter_turn + "\n0.2 " + quarter_turn + "\n");
+  const auto stamped = spatial_trajectory("0.1 " + quarter_turn + "\n0.2 " + quarter_turn + "\n");
   EXPECT_THAT(stamped.timestamps, ElementsAre(0.1, 0.2));
   EXPECT_EQ(stamped.poses[0].translation(), Eigen::Vector3d(1, 2, 3));
 }
 
 TEST(ReadTrajectory, Euroc) {
-  const auto trajectory = spatial(
+  const auto trajectory = spatial_trajectory(
       "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x []\n"
       "1403636580838555648,4.6,-1.7,0.7,0.8,0.6,0,0,0.1,0.2,0.3\r\n");
   EXPECT_THAT(trajectory.timestamps, ElementsAre(1403636580838555648.0 / 1e9));
@@ -66,7 +66,7 @@ TEST(ReadTrajectory, Euroc) {
 TEST(ReadTrajectory, PlanarRowsWithBlanksOrCommasAndNames) {
   for (const char* text : {"10 1 2 0.5\n11 3 4 0.25\n", "10, 1, 2, 0.5\n11,3,4,0.25",
                            "time,x,y,theta\n10,1,2,0.5\n11,3,4,0.25\n"}) {
-    const auto file = parse(text);
+    const auto file = parse_trajectory(text);
     const auto& trajectory = std::get<Trajectory<Pose2>>(file.trajectory);
     EXPECT_THAT(trajectory.timestamps, ElementsAre(10, 11)) << text;
     EXPECT_EQ(trajectory.poses[1].translation(), Eigen::Vector2d(3, 4));
@@ -75,7 +75,7 @@ TEST(ReadTrajectory, PlanarRowsWithBlanksOrCommasAndNames) {
 }
 
 TEST(ReadTrajectory, PositionsTakeTheirHeadingsByTime) {
-  const auto file = parse("point2 0 1 2 0 0 0 0\npoint2 1 3 4 0 0 0 0\nangle 1 0.5 0\n");
+  const auto file = parse_trajectory("point2 0 1 2 0 0 0 0\npoint2 1 3 4 0 0 0 0\nangle 1 0.5 0\n");
   EXPECT_EQ(file.report.format, "points");
   const auto& trajectory = std::get<Trajectory<Pose2>>(file.trajectory);
   EXPECT_THAT(trajectory.timestamps, ElementsAre(0, 1));
@@ -85,38 +85,38 @@ TEST(ReadTrajectory, PositionsTakeTheirHeadingsByTime) {
 }
 
 TEST(ReadTrajectory, VerticesOfAPoseGraphOrItsOdometry) {
-  const auto vertices = parse("VERTEX_SE2 0 1 2 0\nVERTEX_SE2 1 3 4 0\n");
+  const auto vertices = parse_trajectory("VERTEX_SE2 0 1 2 0\nVERTEX_SE2 1 3 4 0\n");
   EXPECT_EQ(std::get<Trajectory<Pose2>>(vertices.trajectory).poses[1].translation().x(), 3);
-  const auto chained = parse("EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2 1 2 1 0 0 1 0 0 1 0 1\n");
+  const auto chained = parse_trajectory("EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2 1 2 1 0 0 1 0 0 1 0 1\n");
   const auto& poses = std::get<Trajectory<Pose2>>(chained.trajectory).poses;
   ASSERT_EQ(poses.size(), 3u);
   EXPECT_EQ(poses[2].translation().x(), 2);
 }
 
 TEST(ReadTrajectory, RepairsRotationsAndCounts) {
-  const auto file = parse("1 0 0 1 0 1.0001 0 2 0 0 1 3\n1 0 0 1 0 1.000001 0 2 0 0 1 3\n");
+  const auto file = parse_trajectory("1 0 0 1 0 1.0001 0 2 0 0 1 3\n1 0 0 1 0 1.000001 0 2 0 0 1 3\n");
   EXPECT_THAT(file.report.repairs, ElementsAre(Pair("rotation matrix orthonormalised", 1)));
   EXPECT_THAT(file.report.notes, ElementsAre(Pair("rotation matrix rounded", 1)));
-  EXPECT_THROW(parse("1 0 0 1 0 1.0001 0 2 0 0 1 3\n", true), ParseError);
+  EXPECT_THROW(parse_trajectory("1 0 0 1 0 1.0001 0 2 0 0 1 3\n", true), ParseError);
 }
 
 TEST(ReadTrajectory, LocatesErrors) {
   const std::string expected =
       "; expected a trajectory in TUM, KITTI or EuRoC format, rows of time x y theta, or a pose "
       "graph";
-  EXPECT_EQ(error_of(""), "f: the file is empty" + expected);
-  EXPECT_EQ(error_of("1 2 3 4 5\n"), "f: unknown format" + expected);
-  EXPECT_EQ(error_of("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0\n"),
+  EXPECT_EQ(trajectory_error(""), "f: the file is empty" + expected);
+  EXPECT_EQ(trajectory_error("1 2 3 4 5\n"), "f: unknown format" + expected);
+  EXPECT_EQ(trajectory_error("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0\n"),
             "f:2:14: expected qw, found the end of the line");
-  EXPECT_EQ(error_of("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1 7\n"),
+  EXPECT_EQ(trajectory_error("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1 7\n"),
             "f:2:17: expected the end of the line (got '7')");
-  EXPECT_EQ(error_of("1 0 0 1 0 1 0 2 0 0 -1 3\n"),
+  EXPECT_EQ(trajectory_error("1 0 0 1 0 1 0 2 0 0 -1 3\n"),
             "f:1:1: expected a rotation matrix, this one is a reflection (got '1 0 0 1 0 1 0 2 0 0 "
             "-1 3')");
 }
 
 TEST(ReadTrajectory, NotesStampsThatDoNotIncrease) {
-  const auto file = parse("1 0 0 0\n1 0 0 0\n0 0 0 0\n");
+  const auto file = parse_trajectory("1 0 0 0\n1 0 0 0\n0 0 0 0\n");
   EXPECT_THAT(file.report.notes, ElementsAre(Pair("time stamp not increasing", 2)));
 }
 

@@ -11,15 +11,7 @@ namespace isotherm::slam {
 namespace {
 
 using isotherm_test::random_loop_graph;
-
-template <class Pose>
-double worst_difference(const std::vector<Pose>& a, const std::vector<Pose>& b) {
-  double worst = a.size() == b.size() ? 0.0 : 1e300;
-  for (std::size_t v = 0; v < std::min(a.size(), b.size()); ++v) {
-    worst = std::max(worst, (a[v].inverse() * b[v]).log().norm());
-  }
-  return worst;
-}
+using isotherm_test::worst_difference;
 
 template <class Pose>
 class Initialize : public testing::Test {

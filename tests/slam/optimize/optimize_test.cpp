@@ -14,6 +14,7 @@ namespace isotherm::slam {
 namespace {
 
 using isotherm_test::random_loop_graph;
+using isotherm_test::worst_difference;
 using isotherm_test::random_tangent;
 using testing::ElementsAre;
 using testing::IsEmpty;
@@ -48,15 +49,6 @@ double largest_slope(const PoseGraph<Pose>& graph, std::vector<Pose> poses,
     poses[v] = centre;
   }
   return largest;
-}
-
-template <class Pose>
-double worst_difference(const std::vector<Pose>& a, const std::vector<Pose>& b) {
-  double worst = 0.0;
-  for (std::size_t v = 0; v < a.size(); ++v) {
-    worst = std::max(worst, (a[v].inverse() * b[v]).log().norm());
-  }
-  return worst;
 }
 
 template <class Pose>

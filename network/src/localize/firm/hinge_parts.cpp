@@ -10,9 +10,9 @@ namespace {
 constexpr std::size_t kLeast = 3;
 constexpr std::size_t kMost = 200;
 
-class Search {
+class PartSearch {
  public:
-  Search(const RangeProblem& problem, const std::vector<bool>& trusted,
+  PartSearch(const RangeProblem& problem, const std::vector<bool>& trusted,
          const std::vector<bool>& placed, Index hinge)
       : problem_(problem), trusted_(trusted), placed_(placed), blocked_{hinge} {
     border_ = neighbours(hinge);
@@ -73,7 +73,7 @@ class Search {
 std::vector<std::vector<Index>> parts_behind(const RangeProblem& problem,
                                              const std::vector<bool>& trusted,
                                              const std::vector<bool>& placed, Index hinge) {
-  return Search(problem, trusted, placed, hinge).run();
+  return PartSearch(problem, trusted, placed, hinge).run();
 }
 
 }  // namespace isotherm::network::detail

@@ -22,7 +22,7 @@ constexpr double kMostBroken = 10.0;
 constexpr double kBroken = 0.5;
 
 // A trusted pair of placed nodes, as one of them sees it.
-struct Tie {
+struct PairTie {
   Index vertex = 0;  // the other
   double distance = 0.0;
   double sigma = 1.0;
@@ -34,9 +34,9 @@ struct Tie {
 };
 
 // The ties of all nodes, side by side: a search goes over them again and again.
-class Ties {
+class PairTies {
  public:
-  Ties(const RangeProblem& problem, const std::vector<bool>& trusted, const Limits& limits,
+  PairTies(const RangeProblem& problem, const std::vector<bool>& trusted, const Limits& limits,
        const Placement& placement)
       : limits_(limits) {
     for (Index v = 0; v < problem.nodes; ++v) {
@@ -47,7 +47,7 @@ class Ties {
         if (!trusted[edge] || !placement.placed[vertex]) continue;
         const auto& pair = problem.pairs[edge];
         const Eigen::Vector2d arm = placement.positions.col(v) - placement.positions.col(vertex);
-        Tie tie{vertex, pair.distance, pair.sigma, arm.squaredNorm()};
+        PairTie tie{vertex, pair.distance, pair.sigma, arm.squaredNorm()};
         tie.cost = cost_of(tie, std::sqrt(tie.squared));
         limit(tie);
         ties_.push_back(tie);
@@ -56,21 +56,21 @@ class Ties {
     first_.push_back(ties_.size());
   }
 
-  std::span<const Tie> of(Index node) const {
+  std::span<const PairTie> of(Index node) const {
     return std::span(ties_).subspan(first_[node], first_[node + 1] - first_[node]);
   }
 
   const Eigen::Vector2d& place(Index node) const { return places_[node]; }
 
   // What it costs that the ends of a tie are this far from each other.
-  double cost_of(const Tie& tie, double length) const {
+  double cost_of(const PairTie& tie, double length) const {
     const double r = (length - tie.distance) / tie.sigma;
     return std::min(r * r, limits_(r));
   }
 
  private:
   // A broken one costs more than before by half of what a range that does not fit does.
-  void limit(Tie& tie) const {
+  void limit(PairTie& tie) const {
     const double broken = tie.cost + kBroken * limits_.least();
     const double apart = tie.distance + tie.sigma * std::sqrt(broken);
     const double close = tie.distance - tie.sigma * std::sqrt(broken);
@@ -82,13 +82,13 @@ class Ties {
   const Limits& limits_;
   std::vector<Eigen::Vector2d> places_;
   std::vector<std::size_t> first_;  // node -> its first tie
-  std::vector<Tie> ties_;
+  std::vector<PairTie> ties_;
 };
 
 // The folds in lines through one node after the other.
-class Search {
+class AxisSearch {
  public:
-  Search(const RangeProblem& problem, const Ties& ties, const Limits& limits,
+  AxisSearch(const RangeProblem& problem, const PairTies& ties, const Limits& limits,
          const Placement& placement)
       : problem_(problem),
         ties_(ties),
@@ -184,11 +184,11 @@ class Search {
   }
 
   // Squared distance of the ends of a tie if the one at a height is mirrored, the other not.
-  double mirrored(const Tie& tie, double turned) const {
+  double mirrored(const PairTie& tie, double turned) const {
     return std::max(0.0, tie.squared + 4.0 * turned * height(tie.vertex));
   }
 
-  bool breaks(const Tie& tie, double turned) const {
+  bool breaks(const PairTie& tie, double turned) const {
     const double squared = mirrored(tie, turned);
     return squared > tie.most || squared < tie.least;
   }
@@ -197,7 +197,7 @@ class Search {
   double height(Index node) const { return normal_.dot(ties_.place(node) - through_); }
 
   const RangeProblem& problem_;
-  const Ties& ties_;
+  const PairTies& ties_;
   const Limits& limits_;
   Index most_;               // nodes of a part
   Eigen::Vector2d through_;  // the axis
@@ -253,10 +253,10 @@ std::vector<Fold> find_folds(const RangeProblem& problem, const std::vector<bool
   constexpr Index kBlock = 64;  // nodes that share the memory of a search
   if (problem.dimension != 2) return {};
   const Index blocks = (problem.nodes + kBlock - 1) / kBlock;
-  const Ties ties(problem, trusted, limits, placement);
+  const PairTies ties(problem, trusted, limits, placement);
   std::vector<std::vector<Fold>> found(blocks);
   parallel_for(blocks, options.threads, options.progress, "folds", [&](std::int64_t block) {
-    Search search(problem, ties, limits, placement);
+    AxisSearch search(problem, ties, limits, placement);
     const auto first = static_cast<Index>(block) * kBlock;
     for (Index v = first; v < std::min(problem.nodes, first + kBlock); ++v) {
       if (among[v]) search.add_folds_through(v, found[block]);

@@ -7,9 +7,9 @@
 namespace isotherm::slam {
 namespace {
 
-class Search {
+class CliqueSearch {
  public:
-  Search(const BitGraph& graph, std::int64_t budget) : graph_(graph), budget_(budget) {}
+  CliqueSearch(const BitGraph& graph, std::int64_t budget) : graph_(graph), budget_(budget) {}
 
   Clique run() {
     std::vector<Index> order(static_cast<std::size_t>(graph_.vertex_count()));
@@ -109,7 +109,7 @@ Index BitGraph::degree(Index vertex) const {
 }
 
 Clique max_clique(const BitGraph& graph, std::int64_t budget) {
-  return Search(graph, budget).run();
+  return CliqueSearch(graph, budget).run();
 }
 
 }  // namespace isotherm::slam

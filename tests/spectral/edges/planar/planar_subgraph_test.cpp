@@ -15,10 +15,6 @@ namespace {
 
 using namespace isotherm_test;
 
-std::vector<double> equal(const WeightedGraph& graph, double value = 1.0) {
-  return std::vector<double>(graph.edges().size(), value);
-}
-
 /// By trying all sets of edges.
 double greatest_worth(const WeightedGraph& graph, const std::vector<double>& worth) {
   const auto count = static_cast<unsigned>(graph.edge_count());
@@ -90,46 +86,46 @@ TEST(PlanarSubgraph, KeepsAGridAndNotItsShortcuts) {
   for (Index e = 0; e < graph.edge_count(); ++e) {
     suspicion.push_back(random.uniform() + (e < grid.edge_count() ? 0.0 : 0.5));
   }
-  const auto plane = find_planar_subgraph(graph, equal(graph), suspicion);
+  const auto plane = find_planar_subgraph(graph, equal_worth(graph), suspicion);
   ASSERT_EQ(plane.chosen.size(), graph.edges().size());
   EXPECT_TRUE(is_maximal(graph, plane.chosen));
   const auto kept =
       std::count(plane.chosen.begin(), plane.chosen.begin() + grid.edge_count(), true);
   EXPECT_GE(kept, grid.edge_count() - 4);
-  EXPECT_EQ(plane.chosen, find_planar_subgraph(graph, equal(graph), suspicion).chosen);
+  EXPECT_EQ(plane.chosen, find_planar_subgraph(graph, equal_worth(graph), suspicion).chosen);
 }
 
 TEST(PlanarSubgraph, ChoosesByWorthThenBySuspicion) {
   const auto complete = complete_graph(5);  // any edge may go
-  auto worth = equal(complete);
+  auto worth = equal_worth(complete);
   worth[9] = 2.0;  // the one that is left out first
-  EXPECT_FALSE(find_planar_subgraph(complete, worth, equal(complete), {.rounds = 0}).chosen[9]);
-  const auto by_worth = find_planar_subgraph(complete, worth, equal(complete));
+  EXPECT_FALSE(find_planar_subgraph(complete, worth, equal_worth(complete), {.rounds = 0}).chosen[9]);
+  const auto by_worth = find_planar_subgraph(complete, worth, equal_worth(complete));
   EXPECT_DOUBLE_EQ(by_worth.worth, 10.0);
   EXPECT_TRUE(by_worth.chosen[9]);
-  auto suspicion = equal(complete);
+  auto suspicion = equal_worth(complete);
   suspicion[4] = 5.0;
-  EXPECT_FALSE(find_planar_subgraph(complete, equal(complete), suspicion).chosen[4]);
+  EXPECT_FALSE(find_planar_subgraph(complete, equal_worth(complete), suspicion).chosen[4]);
 }
 
 TEST(PlanarSubgraph, GivesUpOnWhatIsNotNearlyPlanar) {
   const auto dense = complete_graph(30);
-  EXPECT_TRUE(find_planar_subgraph(dense, equal(dense), equal(dense)).chosen.empty());
+  EXPECT_TRUE(find_planar_subgraph(dense, equal_worth(dense), equal_worth(dense)).chosen.empty());
   Random random(65);
   const auto sparse = with_shortcuts(ring_graph(200), 200, random);  // few enough edges
-  EXPECT_TRUE(find_planar_subgraph(sparse, equal(sparse), equal(sparse)).chosen.empty());
+  EXPECT_TRUE(find_planar_subgraph(sparse, equal_worth(sparse), equal_worth(sparse)).chosen.empty());
   const auto grid = with_shortcuts(grid_graph(20, 20), 20, random);
-  EXPECT_TRUE(find_planar_subgraph(grid, equal(grid), equal(grid), {.budget = 1e4}).chosen.empty());
+  EXPECT_TRUE(find_planar_subgraph(grid, equal_worth(grid), equal_worth(grid), {.budget = 1e4}).chosen.empty());
 }
 
 TEST(PlanarSubgraph, TakesDegenerateGraphsAndIsCancelled) {
   EXPECT_TRUE(find_planar_subgraph(WeightedGraph(), {}, {}).chosen.empty());
   const WeightedGraph loops(3, {{0, 0, 1.0}, {0, 1, 1.0}, {1, 0, 1.0}});
-  const auto plane = find_planar_subgraph(loops, equal(loops), equal(loops));
+  const auto plane = find_planar_subgraph(loops, equal_worth(loops), equal_worth(loops));
   EXPECT_EQ(plane.chosen, (std::vector<bool>{false, true, true}));
   Random random(66);
   const auto grid = with_shortcuts(grid_graph(10, 10), 5, random);
-  EXPECT_THROW(find_planar_subgraph(grid, equal(grid), equal(grid),
+  EXPECT_THROW(find_planar_subgraph(grid, equal_worth(grid), equal_worth(grid),
                                     {.progress = [](const Progress&) { return false; }}),
                Cancelled);
 }

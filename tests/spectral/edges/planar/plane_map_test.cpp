@@ -15,10 +15,6 @@ using namespace isotherm_test;
 
 constexpr int kMany = 1000;
 
-std::vector<bool> all_edges(const WeightedGraph& graph) {
-  return std::vector<bool>(graph.edges().size(), true);
-}
-
 /// Crossings in a grid, whose drawing is the usual one: straight through the cells, or around.
 int grid_crossings(Index width, Index height, Index from, Index to) {
   const auto border = [&](Index v) {

@@ -13,10 +13,6 @@ using namespace isotherm_test;
 
 WalkAffinityOptions walks() { return {.scale = 2.0, .horizon = 12}; }
 
-std::vector<double> equal(const WeightedGraph& graph) {
-  return std::vector<double>(graph.edges().size(), 1.0);
-}
-
 TEST(PlaneScores, RankShortcutsByWhatTheyCross) {
   const Index side = 15;
   const auto grid = grid_graph(side, side);
@@ -27,7 +23,7 @@ TEST(PlaneScores, RankShortcutsByWhatTheyCross) {
   edges.push_back({at(3, 3), at(9, 8), 1.0});  // across many
   const WeightedGraph graph(grid.vertex_count(), edges);
   const std::vector<VertexPair> pairs = {{at(3, 3), at(10, 10)}, {at(7, 7), at(4, 10)}};
-  const auto scores = plane_scores(graph, equal(graph), equal(graph), pairs, walks());
+  const auto scores = plane_scores(graph, equal_worth(graph), equal_worth(graph), pairs, walks());
   ASSERT_TRUE(scores);
   const auto first = scores->edges.end() - 3;
   EXPECT_LT(first[0], first[1]);
@@ -41,10 +37,10 @@ TEST(PlaneScores, RankShortcutsByWhatTheyCross) {
 TEST(PlaneScores, SayNothingWhereCrossingsDoNot) {
   const auto dense = complete_graph(12);
   const std::vector<VertexPair> pairs = {{0, 7}, {1, 8}};
-  EXPECT_FALSE(plane_scores(dense, equal(dense), equal(dense), pairs, walks()));
+  EXPECT_FALSE(plane_scores(dense, equal_worth(dense), equal_worth(dense), pairs, walks()));
   // Around a ring everything can be joined on the outside.
   const auto ring = ring_graph(30);
-  EXPECT_FALSE(plane_scores(ring, equal(ring), equal(ring), pairs, walks()));
+  EXPECT_FALSE(plane_scores(ring, equal_worth(ring), equal_worth(ring), pairs, walks()));
   EXPECT_FALSE(plane_scores(WeightedGraph(), {}, {}, {}, walks()));
 }
 

@@ -10,14 +10,14 @@ namespace {
 
 constexpr double kMiddle = 0.5;
 constexpr double kUpper = 0.9;
-constexpr double kDeviations = 2.0;
+constexpr double kTailDeviations = 2.0;
 // Of the logarithm of the ratio of both quantiles, times the root of their number: 1.3
 // for 3 degrees of freedom and 0.9 for 6 where errors are Gaussian, more in heavy tails.
 constexpr double kDeviationOfOne = 1.5;
 constexpr double kCauchy = 1.0;      // degrees of freedom of Student's distribution: the least
 constexpr double kGaussian = 200.0;  // and as good as infinitely many
 constexpr int kHalvings = 40;
-constexpr double kRounding = 1e-8;  // chi-squared of data without errors
+constexpr double kWithoutErrors = 1e-8;  // chi-squared of data without errors
 
 double over_median(double probability, int dof, double nu) {
   return f_quantile(probability, dof, nu) / f_quantile(kMiddle, dof, nu);
@@ -38,9 +38,9 @@ double degrees_of_freedom(double ratio, int dof) {
 }  // namespace
 
 Tail student_tail(const std::vector<double>& chi2, int dof, double probability) {
-  const double middle = std::max(quantile(chi2, kMiddle), kRounding);
+  const double middle = std::max(quantile(chi2, kMiddle), kWithoutErrors);
   const double upper = std::max(quantile(chi2, kUpper), middle);
-  const double error = kDeviations * kDeviationOfOne / std::sqrt(static_cast<double>(chi2.size()));
+  const double error = kTailDeviations * kDeviationOfOne / std::sqrt(static_cast<double>(chi2.size()));
   const double nu = degrees_of_freedom(upper / middle * std::exp(error), dof);
   const double student = over_median(1.0 - probability, dof, nu);
   const double gaussian =

@@ -9,7 +9,7 @@ namespace isotherm::slam::detail {
 namespace {
 
 constexpr double kHalfOctave = std::numbers::sqrt2;
-constexpr double kDeviations = 3.0;
+constexpr double kOctaveDeviations = 3.0;
 
 }  // namespace
 
@@ -26,6 +26,6 @@ std::size_t OctaveCounts::below(double x) const {
   return static_cast<std::size_t>(std::ranges::lower_bound(values_, x) - values_.begin());
 }
 
-bool more(double a, double b) { return a - b > kDeviations * std::sqrt(a + b); }
+bool more(double a, double b) { return a - b > kOctaveDeviations * std::sqrt(a + b); }
 
 }  // namespace isotherm::slam::detail

@@ -13,7 +13,7 @@ namespace {
 constexpr double kQuantile = 0.2;
 constexpr std::size_t kFewestCycles = 50;
 // Loops that were copied along odometry close to rounding, and say nothing of accuracy.
-constexpr double kRounding = 1e-8;
+constexpr double kCopied = 1e-8;
 // The octave that parts two crowds has at most one in so many of either's fullest.
 constexpr double kDepth = 2.0;
 
@@ -42,7 +42,7 @@ std::size_t lower_crowd(const OctaveCounts& cycles) {
 }  // namespace
 
 double cycle_scale(std::vector<double> chi2, int dof) {
-  std::erase_if(chi2, [](double x) { return x < kRounding || !std::isfinite(x); });
+  std::erase_if(chi2, [](double x) { return x < kCopied || !std::isfinite(x); });
   if (chi2.size() < kFewestCycles) return 1.0;
   const OctaveCounts cycles(std::move(chi2));
   const auto crowd = static_cast<std::ptrdiff_t>(lower_crowd(cycles));
