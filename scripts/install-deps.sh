@@ -12,7 +12,7 @@ packages=(
   # dense kernels, also for CHOLMOD; several times as fast as the reference ones
   libblas-dev libopenblas0-serial
   # tests
-  libgtest-dev libgmock-dev librapidcheck-dev
+  libgtest-dev libgmock-dev python3
   # benchmarks
   libbenchmark-dev
 )
@@ -21,12 +21,16 @@ packages=(
 # from elsewhere than Debian, and then brings npm along.
 test_commands=("chromium chromium" "node nodejs" "npm npm")
 
+# What scripts/check.sh calls.
+check_packages=(clang-format-14 clang-tidy-14 shellcheck git)
+
 usage() {
   cat <<'USAGE'
-usage: scripts/install-deps.sh [--tests] [--list]
+usage: scripts/install-deps.sh [--tests] [--checks] [--list]
 
 Installs the Debian packages Isotherm is built with.
   --tests  also those that only the tests need: a browser and Node
+  --checks also those that scripts/check.sh calls
   --list   only print which packages are missing
 USAGE
 }
@@ -50,6 +54,7 @@ for argument in "$@"; do
   case "$argument" in
     --list) list_only=true ;;
     --tests) tests=true ;;
+    --checks) packages+=("${check_packages[@]}") ;;
     --help | -h) usage; exit 0 ;;
     *) usage >&2; exit 2 ;;
   esac

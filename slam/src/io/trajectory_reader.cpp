@@ -13,7 +13,8 @@ namespace {
 
 class TrajectoryReader {
  public:
-  TrajectoryReader(TextReader& text, FileFormat format, const ReadOptions& options, ReadReport& report)
+  TrajectoryReader(TextReader& text, FileFormat format, const ReadOptions& options,
+                   ReadReport& report)
       : text_(text), format_(format), report_(report), fields_(text, options, report) {}
 
   AnyTrajectory run() {

@@ -14,7 +14,6 @@
 namespace isotherm::network::detail {
 namespace {
 
-
 std::vector<Index> numbers(Index count) {
   std::vector<Index> nodes;
   for (Index v = 0; v < count; ++v) nodes.push_back(v);

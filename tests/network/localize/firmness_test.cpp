@@ -8,7 +8,6 @@
 namespace isotherm::network::detail {
 namespace {
 
-
 /// Whether node 8 is firm at its place between eight anchors, of which it has ranges to `here`, if
 /// it has `elsewhere` more to nodes without a place.
 bool is_firm(int here, int elsewhere) {

@@ -12,7 +12,6 @@
 namespace isotherm::network::detail {
 namespace {
 
-
 /// Part of the nodes that are nearer than `tolerance` to the truth after the best isometry.
 double share_near(const Placement& map, const Eigen::MatrixXd& truth, double tolerance) {
   std::vector<Index> nodes;

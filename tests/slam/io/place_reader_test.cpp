@@ -20,7 +20,8 @@ std::string place_error(const std::string& text) {
 const std::string kStart = "odom2 0 0 0 0 0.01 0.01 0.04\n";
 
 TEST(ReadPlaces, VelocitiesBecomeOdometry) {
-  const auto file = parse_places(kStart + "odom2 0.5 2 0 0 0.01 0.04 0.25\nodom2 1 0 0 1 0.01 0.01 1\n");
+  const auto file =
+      parse_places(kStart + "odom2 0.5 2 0 0 0.01 0.04 0.25\nodom2 1 0 0 1 0.01 0.01 1\n");
   const auto& graph = std::get<PoseGraph<Pose2>>(file.graph);
   ASSERT_EQ(graph.vertex_count(), 3);
   ASSERT_EQ(graph.constraint_count(), 2);
@@ -33,8 +34,8 @@ TEST(ReadPlaces, VelocitiesBecomeOdometry) {
 
 TEST(ReadPlaces, RecognisedPlacesJoinTheNearestPoses) {
   const auto file = parse_places(kStart +
-                          "odom2 1 1 0 0 1 1 1\nodom2 2 1 0 0 1 1 1\nodom2 3 1 0 0 1 1 1\n"
-                          "loop 3.4 0.4 0.9\n");
+                                 "odom2 1 1 0 0 1 1 1\nodom2 2 1 0 0 1 1 1\nodom2 3 1 0 0 1 1 1\n"
+                                 "loop 3.4 0.4 0.9\n");
   const auto& graph = std::get<PoseGraph<Pose2>>(file.graph);
   const auto& loop = graph.constraints.back();
   EXPECT_EQ(loop.from, 3);
@@ -48,7 +49,8 @@ TEST(ReadPlaces, LocatesErrors) {
   EXPECT_EQ(place_error("odom2 0 0 0 0 1 0 1\n"), "f:1:17: expected a variance > 0 (got '0')");
   EXPECT_EQ(place_error(kStart + "odom2 0 0 0 0 1 1 1\n"),
             "f:2:7: expected a later time stamp (got '0')");
-  EXPECT_EQ(place_error(kStart + "loop 0 9 0.5\n"), "f:2:6: no odometry within a second of this time");
+  EXPECT_EQ(place_error(kStart + "loop 0 9 0.5\n"),
+            "f:2:6: no odometry within a second of this time");
   EXPECT_EQ(place_error(kStart + "loop 0 0 1.5\n"),
             "f:2:10: expected a similarity in [0, 1] (got '1.5')");
   EXPECT_EQ(place_error(kStart + "range2 1\n"), "f:2:1: expected odom2 or loop (got 'range2')");

@@ -184,8 +184,8 @@ TEST(ReadPoseGraph, RepairsAnglesAndQuaternionsAndCounts) {
   EXPECT_EQ(graph_error("VERTEX_SE2 0 0 0 7\n", true),
             "f.g2o:1:18: angle outside [-pi, pi]; wrapped (got '7')");
 
-  const auto file =
-      parse_graph("VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1.001\nVERTEX_SE3:QUAT 1 0 0 0 0.6 0 0 0.800001\n");
+  const auto file = parse_graph(
+      "VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1.001\nVERTEX_SE3:QUAT 1 0 0 0 0.6 0 0 0.800001\n");
   const auto& rotations = std::get<PoseGraph<Pose3>>(file.graph).poses;
   EXPECT_EQ(rotations[0].rotation().w(), 1.0);
   EXPECT_NEAR(rotations[1].rotation().norm(), 1.0, 1e-15);
@@ -239,7 +239,8 @@ TEST(ReadPoseGraph, SortsVerticesByIdAndRefusesRepeats) {
 }
 
 TEST(ReadPoseGraph, ToroRecords) {
-  const auto file = parse_graph("VERTEX2 0 0 0 0\nVERTEX2 1 1 0 0\nEDGE2 0 1 1 0 0 10 1 20 30 2 3\n");
+  const auto file =
+      parse_graph("VERTEX2 0 0 0 0\nVERTEX2 1 1 0 0\nEDGE2 0 1 1 0 0 10 1 20 30 2 3\n");
   EXPECT_EQ(file.report.format, "toro");
   Eigen::Matrix3d information;
   information << 10, 1, 2, 1, 20, 3, 2, 3, 30;

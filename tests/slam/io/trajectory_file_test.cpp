@@ -33,7 +33,8 @@ std::string trajectory_error(const std::string& text) {
 }
 
 TEST(ReadTrajectory, Tum) {
-  const auto file = parse_trajectory("# time x y z qx qy qz qw\n1.5 1 2 3 0 0 0.6 0.8\n2.5 4 5 6 0 0 0 1\n");
+  const auto file =
+      parse_trajectory("# time x y z qx qy qz qw\n1.5 1 2 3 0 0 0.6 0.8\n2.5 4 5 6 0 0 0 1\n");
   EXPECT_EQ(file.report.format, "tum");
   const auto& trajectory = std::get<Trajectory<Pose3>>(file.trajectory);
   EXPECT_THAT(trajectory.timestamps, ElementsAre(1.5, 2.5));
@@ -87,14 +88,16 @@ TEST(ReadTrajectory, PositionsTakeTheirHeadingsByTime) {
 TEST(ReadTrajectory, VerticesOfAPoseGraphOrItsOdometry) {
   const auto vertices = parse_trajectory("VERTEX_SE2 0 1 2 0\nVERTEX_SE2 1 3 4 0\n");
   EXPECT_EQ(std::get<Trajectory<Pose2>>(vertices.trajectory).poses[1].translation().x(), 3);
-  const auto chained = parse_trajectory("EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2 1 2 1 0 0 1 0 0 1 0 1\n");
+  const auto chained =
+      parse_trajectory("EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2 1 2 1 0 0 1 0 0 1 0 1\n");
   const auto& poses = std::get<Trajectory<Pose2>>(chained.trajectory).poses;
   ASSERT_EQ(poses.size(), 3u);
   EXPECT_EQ(poses[2].translation().x(), 2);
 }
 
 TEST(ReadTrajectory, RepairsRotationsAndCounts) {
-  const auto file = parse_trajectory("1 0 0 1 0 1.0001 0 2 0 0 1 3\n1 0 0 1 0 1.000001 0 2 0 0 1 3\n");
+  const auto file =
+      parse_trajectory("1 0 0 1 0 1.0001 0 2 0 0 1 3\n1 0 0 1 0 1.000001 0 2 0 0 1 3\n");
   EXPECT_THAT(file.report.repairs, ElementsAre(Pair("rotation matrix orthonormalised", 1)));
   EXPECT_THAT(file.report.notes, ElementsAre(Pair("rotation matrix rounded", 1)));
   EXPECT_THROW(parse_trajectory("1 0 0 1 0 1.0001 0 2 0 0 1 3\n", true), ParseError);

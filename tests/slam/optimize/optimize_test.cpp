@@ -14,8 +14,8 @@ namespace isotherm::slam {
 namespace {
 
 using isotherm_test::random_loop_graph;
-using isotherm_test::worst_difference;
 using isotherm_test::random_tangent;
+using isotherm_test::worst_difference;
 using testing::ElementsAre;
 using testing::IsEmpty;
 

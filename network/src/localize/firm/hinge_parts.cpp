@@ -13,7 +13,7 @@ constexpr std::size_t kMost = 200;
 class PartSearch {
  public:
   PartSearch(const RangeProblem& problem, const std::vector<bool>& trusted,
-         const std::vector<bool>& placed, Index hinge)
+             const std::vector<bool>& placed, Index hinge)
       : problem_(problem), trusted_(trusted), placed_(placed), blocked_{hinge} {
     border_ = neighbours(hinge);
     blocked_.insert(border_.begin(), border_.end());

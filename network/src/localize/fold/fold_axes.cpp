@@ -37,7 +37,7 @@ struct PairTie {
 class PairTies {
  public:
   PairTies(const RangeProblem& problem, const std::vector<bool>& trusted, const Limits& limits,
-       const Placement& placement)
+           const Placement& placement)
       : limits_(limits) {
     for (Index v = 0; v < problem.nodes; ++v) {
       places_.emplace_back(placement.positions.col(v));
@@ -89,7 +89,7 @@ class PairTies {
 class AxisSearch {
  public:
   AxisSearch(const RangeProblem& problem, const PairTies& ties, const Limits& limits,
-         const Placement& placement)
+             const Placement& placement)
       : problem_(problem),
         ties_(ties),
         limits_(limits),

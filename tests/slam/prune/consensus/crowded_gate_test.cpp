@@ -25,11 +25,16 @@ void add_true_loops(Random& random, int count, double scale, Index span, Spanned
 }
 
 void add_false_loops(Random& random, int count, double least, Index span, SpannedLoops& loops) {
-  for (int k = 0; k < count; ++k) loops.push_back({span, random.uniform(least, 10.0 * kSixDofGate)});
+  for (int k = 0; k < count; ++k)
+    loops.push_back({span, random.uniform(least, 10.0 * kSixDofGate)});
 }
 
-double near_gate(const SpannedLoops& loops) { return crowded_gate(loops, kSixDofGate)[span_class(kNear)]; }
-double far_gate(const SpannedLoops& loops) { return crowded_gate(loops, kSixDofGate)[span_class(kFar)]; }
+double near_gate(const SpannedLoops& loops) {
+  return crowded_gate(loops, kSixDofGate)[span_class(kNear)];
+}
+double far_gate(const SpannedLoops& loops) {
+  return crowded_gate(loops, kSixDofGate)[span_class(kFar)];
+}
 
 TEST(CrowdedGate, StaysWhereNoFalseLoopsCrowd) {
   Random random(71);
@@ -37,11 +42,13 @@ TEST(CrowdedGate, StaysWhereNoFalseLoopsCrowd) {
     SpannedLoops loops;
     add_true_loops(random, 3000, scale, kNear, loops);
     EXPECT_EQ(near_gate(loops), kSixDofGate) << "none at all";
-    for (int k = 0; k < 3000; ++k) loops.push_back({kNear, random.uniform(100.0, 1e4) * kSixDofGate});
+    for (int k = 0; k < 3000; ++k)
+      loops.push_back({kNear, random.uniform(100.0, 1e4) * kSixDofGate});
     EXPECT_EQ(near_gate(loops), kSixDofGate) << "all far off";
   }
   EXPECT_EQ(near_gate({}), kSixDofGate);
-  EXPECT_EQ(near_gate({{kNear, 0.0}, {kNear, 0.0}, {kNear, 1.0}, {kNear, kSixDofGate + 1.0}}), kSixDofGate)
+  EXPECT_EQ(near_gate({{kNear, 0.0}, {kNear, 0.0}, {kNear, 1.0}, {kNear, kSixDofGate + 1.0}}),
+            kSixDofGate)
       << "too few to tell";
 }
 

@@ -99,7 +99,8 @@ TEST(PlanarSubgraph, ChoosesByWorthThenBySuspicion) {
   const auto complete = complete_graph(5);  // any edge may go
   auto worth = equal_worth(complete);
   worth[9] = 2.0;  // the one that is left out first
-  EXPECT_FALSE(find_planar_subgraph(complete, worth, equal_worth(complete), {.rounds = 0}).chosen[9]);
+  EXPECT_FALSE(
+      find_planar_subgraph(complete, worth, equal_worth(complete), {.rounds = 0}).chosen[9]);
   const auto by_worth = find_planar_subgraph(complete, worth, equal_worth(complete));
   EXPECT_DOUBLE_EQ(by_worth.worth, 10.0);
   EXPECT_TRUE(by_worth.chosen[9]);
@@ -113,9 +114,11 @@ TEST(PlanarSubgraph, GivesUpOnWhatIsNotNearlyPlanar) {
   EXPECT_TRUE(find_planar_subgraph(dense, equal_worth(dense), equal_worth(dense)).chosen.empty());
   Random random(65);
   const auto sparse = with_shortcuts(ring_graph(200), 200, random);  // few enough edges
-  EXPECT_TRUE(find_planar_subgraph(sparse, equal_worth(sparse), equal_worth(sparse)).chosen.empty());
+  EXPECT_TRUE(
+      find_planar_subgraph(sparse, equal_worth(sparse), equal_worth(sparse)).chosen.empty());
   const auto grid = with_shortcuts(grid_graph(20, 20), 20, random);
-  EXPECT_TRUE(find_planar_subgraph(grid, equal_worth(grid), equal_worth(grid), {.budget = 1e4}).chosen.empty());
+  EXPECT_TRUE(find_planar_subgraph(grid, equal_worth(grid), equal_worth(grid), {.budget = 1e4})
+                  .chosen.empty());
 }
 
 TEST(PlanarSubgraph, TakesDegenerateGraphsAndIsCancelled) {

@@ -40,7 +40,8 @@ double degrees_of_freedom(double ratio, int dof) {
 Tail student_tail(const std::vector<double>& chi2, int dof, double probability) {
   const double middle = std::max(quantile(chi2, kMiddle), kWithoutErrors);
   const double upper = std::max(quantile(chi2, kUpper), middle);
-  const double error = kTailDeviations * kDeviationOfOne / std::sqrt(static_cast<double>(chi2.size()));
+  const double error =
+      kTailDeviations * kDeviationOfOne / std::sqrt(static_cast<double>(chi2.size()));
   const double nu = degrees_of_freedom(upper / middle * std::exp(error), dof);
   const double student = over_median(1.0 - probability, dof, nu);
   const double gaussian =
