@@ -1,4 +1,5 @@
 // The counts of real files, as their collectors state them.
+#include <ostream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -27,6 +28,8 @@ struct Counts {
   int vertices;
   int consecutive;
   int others;
+
+  friend void PrintTo(const Counts& counts, std::ostream* out) { *out << counts.file; }
 };
 
 class PoseGraphCounts : public Info, public testing::WithParamInterface<Counts> {};
@@ -80,6 +83,8 @@ struct RobotCounts {
   int lines;
   int odometry;
   int between;
+
+  friend void PrintTo(const RobotCounts& counts, std::ostream* out) { *out << counts.file; }
 };
 
 class RobotFileCounts : public Info, public testing::WithParamInterface<RobotCounts> {};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ostream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -132,6 +133,8 @@ struct RealFile {
   const char* format;
   Index nodes;
   std::size_t ranges;
+
+  friend void PrintTo(const RealFile& file, std::ostream* out) { *out << file.name; }
 };
 
 class RealRanges : public testing::TestWithParam<RealFile> {};

@@ -336,7 +336,7 @@ TEST(WriteG2o, RefusesWhatCannotBeReadBack) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-class RealPoseGraph : public testing::TestWithParam<const char*> {};
+class RealPoseGraph : public testing::TestWithParam<std::string> {};
 
 TEST_P(RealPoseGraph, RoundTripsToTheLastBit) {
   ISOTHERM_REAL_DATA_OR_SKIP(path, GetParam());

@@ -1,6 +1,7 @@
 #include "isotherm/slam/io/trajectory_file.hpp"
 
 #include <cmath>
+#include <ostream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -169,6 +170,8 @@ struct RealFile {
   const char* name;
   const char* format;
   std::size_t poses;
+
+  friend void PrintTo(const RealFile& file, std::ostream* out) { *out << file.name; }
 };
 
 class RealTrajectory : public testing::TestWithParam<RealFile> {};

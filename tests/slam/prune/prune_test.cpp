@@ -1,5 +1,7 @@
 #include "isotherm/slam/prune/prune.hpp"
 
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "isotherm/base/error.hpp"
@@ -157,7 +159,7 @@ TEST(PruneMethods, SameVerdictsForAnyNumberOfThreads) {
 }
 
 // Every real graph of the list loads and prunes.
-class RealGraphs : public testing::TestWithParam<const char*> {};
+class RealGraphs : public testing::TestWithParam<std::string> {};
 
 TEST_P(RealGraphs, LoadAndPrune) {
   ISOTHERM_REAL_DATA_OR_SKIP(path, GetParam());
