@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <utility>
 
 #include "heat/heat_engine.hpp"
@@ -32,29 +31,6 @@ void summarise(HeatDistanceResult& result, double tolerance) {
   }
 }
 
-constexpr Index kUnreachable = std::numeric_limits<Index>::max();
-
-/// Number of edges to the nearest of `sources`.
-std::vector<Index> hops_from(const SparseMatrix& laplacian, const std::vector<Index>& sources) {
-  std::vector<Index> hops(laplacian.rows(), kUnreachable);
-  std::vector<Index> queue;
-  for (const Index vertex : sources) {
-    if (hops[vertex] == 0) continue;
-    hops[vertex] = 0;
-    queue.push_back(vertex);
-  }
-  for (std::size_t head = 0; head < queue.size(); ++head) {
-    const Index vertex = queue[head];
-    for (SparseMatrix::InnerIterator entry(laplacian, vertex); entry; ++entry) {
-      const auto neighbour = static_cast<Index>(entry.row());
-      if (hops[neighbour] != kUnreachable) continue;
-      hops[neighbour] = hops[vertex] + 1;
-      queue.push_back(neighbour);
-    }
-  }
-  return hops;
-}
-
 }  // namespace
 
 void HeatDistanceOptions::validate() const {
@@ -71,39 +47,13 @@ std::vector<double> HeatDistanceResult::column(std::size_t scale) const {
 }
 
 struct HeatDistance::Impl {
-  WeightedGraph graph;
-  std::vector<bool> present;  // per edge of the graph
-  SparseMatrix laplacian;     // of the edges that are present
+  SparseMatrix laplacian;
   HeatDistanceOptions options;
-
-  std::vector<std::size_t> touched_pairs(const HeatDistanceResult& result,
-                                         const std::vector<Index>& ends) const;
 };
-
-/// The pairs whose evaluation looked at a vertex of `ends`: within m - 1 hops
-/// for a run of m Lanczos steps, anywhere in its component for other methods.
-std::vector<std::size_t> HeatDistance::Impl::touched_pairs(const HeatDistanceResult& result,
-                                                           const std::vector<Index>& ends) const {
-  const auto hops = hops_from(laplacian, ends);
-  const auto scale_count = result.scales.size();
-  std::vector<std::size_t> touched;
-  for (std::size_t k = 0; k < result.pairs.size(); ++k) {
-    const auto [from, to] = result.pairs[k];
-    const auto begin = result.methods.begin() + static_cast<std::ptrdiff_t>(k * scale_count);
-    const auto end = begin + static_cast<std::ptrdiff_t>(scale_count);
-    const bool local = std::find(begin, end, HeatMethod::rational) == end;
-    const Index nearest = std::min(hops[from], hops[to]);
-    const Index reach = local ? result.steps[k] - 1 : kUnreachable - 1;
-    if (from != to && nearest <= reach) touched.push_back(k);
-  }
-  return touched;
-}
 
 HeatDistance::HeatDistance(const WeightedGraph& graph, HeatDistanceOptions options)
     : impl_(std::make_unique<Impl>()) {
   options.validate();
-  impl_->graph = graph;
-  impl_->present.assign(graph.edges().size(), true);
   impl_->laplacian = Laplacian(graph).matrix();
   impl_->options = std::move(options);
 }
@@ -136,44 +86,9 @@ HeatDistanceResult HeatDistance::evaluate(std::span<const VertexPair> pairs,
   result.methods = std::move(table.methods);
   result.steps = std::move(table.steps);
   result.reasons = std::move(table.plan.reasons);
-  result.by_rational = std::move(table.plan.rational);
   summarise(result, impl_->options.tolerance);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
-}
-
-std::int64_t HeatDistance::remove_edges(std::span<const Index> edges, HeatDistanceResult& result) {
-  const auto start = std::chrono::steady_clock::now();
-  const Index edge_count = impl_->graph.edge_count();
-  for (const Index edge : edges) {
-    if (edge < 0 || edge >= edge_count) throw InvalidArgument("edges", "no such edge");
-  }
-  std::vector<Index> ends;
-  for (const Index edge : edges) {
-    if (!impl_->present[edge]) continue;
-    impl_->present[edge] = false;
-    ends.push_back(impl_->graph.edge(edge).from);
-    ends.push_back(impl_->graph.edge(edge).to);
-  }
-  const auto touched = impl_->touched_pairs(result, ends);
-  impl_->laplacian = Laplacian(filter_edges(impl_->graph, impl_->present)).matrix();
-
-  std::vector<VertexPair> pairs;
-  for (const std::size_t k : touched) pairs.push_back(result.pairs[k]);
-  const detail::HeatEngine engine(impl_->laplacian, impl_->options);
-  const auto table = engine.evaluate(targets_of(pairs), result.scales, result.thresholds,
-                                     detail::HeatPlan{result.by_rational, result.reasons});
-  const auto scale_count = static_cast<std::ptrdiff_t>(result.scales.size());
-  for (std::size_t k = 0; k < touched.size(); ++k) {
-    const auto source = static_cast<std::ptrdiff_t>(k) * scale_count;
-    const auto target = static_cast<std::ptrdiff_t>(touched[k]) * scale_count;
-    std::copy_n(table.values.begin() + source, scale_count, result.values.begin() + target);
-    std::copy_n(table.methods.begin() + source, scale_count, result.methods.begin() + target);
-    result.steps[touched[k]] = table.steps[k];
-  }
-  summarise(result, impl_->options.tolerance);
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return static_cast<std::int64_t>(touched.size());
 }
 
 HeatDistanceResult heat_distances(const WeightedGraph& graph, std::span<const VertexPair> pairs,

@@ -95,8 +95,7 @@ class HeatEngine::Rational {
 };
 
 HeatTable HeatEngine::evaluate(std::span<const HeatTarget> targets, std::span<const double> scales,
-                               std::span<const double> thresholds,
-                               const std::optional<HeatPlan>& plan) const {
+                               std::span<const double> thresholds) const {
   HeatTable table = blank_table(targets, scales.size());
   table.plan = {std::vector<bool>(scales.size(), false),
                 std::vector<std::string>(scales.size(), "nothing to compute")};
@@ -104,7 +103,7 @@ HeatTable HeatEngine::evaluate(std::span<const HeatTarget> targets, std::span<co
 
   HeatGoal goal{scales, options_.tolerance, thresholds, options_.max_steps};
   Rational rational(laplacian_, targets, options_.tolerance);
-  table.plan = plan ? *plan : choose(targets, goal, rational);
+  table.plan = choose(targets, goal, rational);
   goal.optional = table.plan.rational;
   if (!all_of(table.plan.rational)) run_lanczos(targets, goal, table);
 

@@ -33,10 +33,8 @@ class HeatEngine {
       : laplacian_(laplacian), options_(options) {}
 
   /// All targets at all scales; `thresholds` is empty or has one entry a scale.
-  /// Without a plan, one is made.
   HeatTable evaluate(std::span<const HeatTarget> targets, std::span<const double> scales,
-                     std::span<const double> thresholds,
-                     const std::optional<HeatPlan>& plan = std::nullopt) const;
+                     std::span<const double> thresholds) const;
 
  private:
   class Rational;

@@ -252,36 +252,6 @@ TEST(HeatDistance, SaysWhenStepsRunOut) {
   EXPECT_GE(result.at(0, 0).upper, exact);
 }
 
-TEST(HeatDistance, RemovedEdgesTouchOnlyPairsNearby) {
-  Random random(12);
-  for (const auto method : {HeatMethod::lanczos, HeatMethod::automatic, HeatMethod::rational}) {
-    const auto graph = disjoint_union(loopy_path(3000, 60, random), grid_graph(15, 15));
-    const auto pairs = edge_pairs(graph);
-    const std::vector<double> scales = {0.1, 2.0, 10.0};
-    HeatDistance engine(graph, {.method = method});
-    auto result = engine.evaluate(pairs, scales);
-    const std::vector<Index> removed = {100, 3010, 100};
-    const auto again = engine.remove_edges(removed, result);
-    EXPECT_GT(again, 10);
-    EXPECT_LT(again, method == HeatMethod::lanczos ? 600 : 3100);
-
-    std::vector<bool> keep(graph.edges().size(), true);
-    for (const Index edge : removed) keep[edge] = false;
-    const HeatDistance anew(filter_edges(graph, keep), {.method = method});
-    const auto expected = anew.evaluate(pairs, scales);
-    for (std::size_t k = 0; k < expected.values.size(); ++k) {
-      EXPECT_NEAR(result.values[k].value, expected.values[k].value, 1e-6);
-      if (method == HeatMethod::lanczos) {
-        EXPECT_EQ(result.values[k].lower, expected.values[k].lower);
-        EXPECT_EQ(result.values[k].upper, expected.values[k].upper);
-      }
-    }
-    EXPECT_TRUE(result.converged());
-    EXPECT_EQ(engine.remove_edges(removed, result), 0);
-    EXPECT_THROW(engine.remove_edges(std::vector<Index>{-1}, result), InvalidArgument);
-  }
-}
-
 TEST(HeatDistance, RejectsBadArguments) {
   const auto graph = path_graph(3);
   const std::vector<VertexPair> outside = {{0, 1}, {0, 3}};

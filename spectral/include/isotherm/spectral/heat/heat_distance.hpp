@@ -65,7 +65,6 @@ struct HeatDistanceResult {
   std::vector<CertifiedValue> values;  ///< pairs x scales
   std::vector<HeatMethod> methods;     ///< pairs x scales: which method decided
   std::vector<std::int32_t> steps;     ///< per pair: Lanczos steps taken
-  std::vector<bool> by_rational;       ///< per scale: given to the rational method
   std::vector<std::string> reasons;    ///< per scale: why its method was chosen
   std::int64_t unconverged = 0;        ///< values wider than asked for; their bracket still holds
   double widest = 0.0;                 ///< largest width of a bracket
@@ -102,17 +101,6 @@ class HeatDistance {
   /// one side of its scale's threshold (`thresholds` has one entry a scale).
   HeatDistanceResult evaluate(std::span<const VertexPair> pairs, std::span<const double> scales,
                               std::span<const double> thresholds) const;
-
-  /// Takes edges (by id, those removed before are skipped) out of the graph and
-  /// brings `result`, which evaluate() of this object gave, up to date.
-  ///
-  /// Only pairs whose evaluation looked at an end of a removed edge are
-  /// evaluated again, by the methods chosen before: those within m - 1 hops
-  /// after m Lanczos steps; values found by the rational method depend on the
-  /// whole component. Returns the number of pairs evaluated again.
-  /// @throws InvalidArgument for an id outside the graph; Cancelled, after which
-  ///   `result` is out of date.
-  std::int64_t remove_edges(std::span<const Index> edges, HeatDistanceResult& result);
 
  private:
   struct Impl;
