@@ -209,7 +209,8 @@ TYPED_TEST(Optimize, ZeroInformationJoinsAndMovesNothing) {
     EXPECT_EQ(after.components, 2);
     EXPECT_EQ(after.projected_information, 0);
     EXPECT_EQ((after.poses[10].log()).norm(), 0.0);
-    EXPECT_LT(worst_difference(before.poses, after.poses), 1e-7);
+    const std::vector<Pose> joined(after.poses.begin(), after.poses.end() - 1);
+    EXPECT_LT(worst_difference(before.poses, joined), 1e-7);
     EXPECT_EQ(after.chi2[graph.constraint_count() - 1], 0.0);
   }
   for (auto& constraint : graph.constraints) constraint.information.setZero();
