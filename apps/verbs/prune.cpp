@@ -64,6 +64,23 @@ Json to_json(const ConsensusResult& result, const spectral::EdgeVerdicts& verdic
   return json;
 }
 
+Json to_json(const EvidenceResult& result, const spectral::EdgeVerdicts& verdicts) {
+  Json json = {{"log_evidence", finite_or_null(result.log_evidence)},
+               {"odometry_scale", result.odometry_scale},
+               {"loop_scale", result.loop_scale},
+               {"tail_dof", result.tail_dof},
+               {"settled", result.settled},
+               {"loops", Json::array()}};
+  for (std::size_t k = 0; k < result.details.size(); ++k) {
+    const auto& detail = result.details[k];
+    json["loops"].push_back({{"edge", verdicts[k].edge},
+                             {"probability", finite_or_null(detail.probability)},
+                             {"evidence", finite_or_null(detail.log_ratio)},
+                             {"chi2", finite_or_null(detail.chi2)}});
+  }
+  return json;
+}
+
 Json to_json(const PruneResult& result, const PruneOptions& options) {
   Json json = {{"schema", "isotherm.prune/1"},
                {"method", result.method},
@@ -80,6 +97,9 @@ Json to_json(const PruneResult& result, const PruneOptions& options) {
   }
   if (result.method == ConsensusOptions::method()) {
     json["consensus"] = to_json(result.consensus, result.verdicts);
+  }
+  if (!result.evidence.details.empty()) {
+    json["evidence"] = to_json(result.evidence, result.verdicts);
   }
   return json;
 }

@@ -38,7 +38,8 @@ void Estimate<Pose>::update(const std::vector<bool>& accepted, const CovarianceS
   }
   const auto step_count = static_cast<Index>(graph_.steps.size());
   const auto scaling = [&](Index link, double) {
-    const double weight = 1.0 / (link < step_count ? scale.odometry : scale.loops);
+    double weight = 1.0 / (link < step_count ? scale.odometry : scale.loops);
+    if (link >= step_count && !weights_.empty()) weight *= weights_[used_loops_[link - step_count]];
     return EdgeScaling{weight, weight, 0.0};
   };
   const Index loop_count = equations_->constraint_count() - step_count;
@@ -110,16 +111,19 @@ double Estimate<Pose>::odometry_cost() const {
 
 // Odometry, then the accepted loops between different nodes.
 template <class Pose>
-PoseGraph<Pose> Estimate<Pose>::used_links(const std::vector<bool>& accepted) const {
+PoseGraph<Pose> Estimate<Pose>::used_links(const std::vector<bool>& accepted) {
   PoseGraph<Pose> used;
   used.ids.assign(graph_.vertex.begin(), graph_.vertex.end());
   const auto add = [&](const Link<Pose>& link) {
     used.constraints.push_back({link.a, link.b, link.T_a_b, link.information});
   };
   for (const auto& step : graph_.steps) add(step);
+  used_loops_.clear();
   for (std::size_t k = 0; k < accepted.size(); ++k) {
     const auto& loop = graph_.loops[k];
-    if (accepted[k] && loop.a != loop.b) add(loop);
+    if (!accepted[k] || loop.a == loop.b) continue;
+    used_loops_.push_back(static_cast<Index>(k));
+    add(loop);
   }
   return used;
 }

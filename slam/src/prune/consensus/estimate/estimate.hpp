@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "optimize/normal_equations.hpp"
@@ -33,6 +34,9 @@ class Estimate {
   /// @throws NumericalError if the normal equations break down
   void update(const std::vector<bool>& accepted, const CovarianceScale& scale, int max_steps);
 
+  /// From the next update on the information of each loop is multiplied by its entry, if any.
+  void weigh_loops(std::vector<double> weights) { weights_ = std::move(weights); }
+
   const std::vector<Pose>& poses() const noexcept { return poses_; }
 
   /// Where the poses are, without the factor there.
@@ -58,11 +62,17 @@ class Estimate {
   /// r' Omega r summed over odometry, in units of the file's covariances.
   double odometry_cost() const;
 
+  /// log|H|, of the factor of the last update.
+  double log_determinant() const { return equations_->hessian().log_determinant(); }
+
+  /// Number of poses that are free, as of the last update.
+  Index variable_count() const { return equations_->hessian().block_count(); }
+
   /// Number of connected parts; each has one pose that is held.
   Index component_count() const noexcept { return component_count_; }
 
  private:
-  PoseGraph<Pose> used_links(const std::vector<bool>& accepted) const;
+  PoseGraph<Pose> used_links(const std::vector<bool>& accepted);
   void join_components(const PoseGraph<Pose>& used);
 
   const ReducedGraph<Pose>& graph_;
@@ -70,6 +80,8 @@ class Estimate {
   std::vector<Index> component_;
   Index component_count_ = 0;
   std::vector<bool> laid_out_for_;  // loops that the equations hold, after all steps
+  std::vector<Index> used_loops_;   // of laid_out_for_, those between different nodes
+  std::vector<double> weights_;
   std::optional<NormalEquations<Pose>> equations_;
 };
 

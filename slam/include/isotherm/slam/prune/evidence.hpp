@@ -1,0 +1,95 @@
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "isotherm/base/run_context.hpp"
+#include "isotherm/slam/graph/pose_graph.hpp"
+#include "isotherm/spectral/edges/edge_verdicts.hpp"
+
+namespace isotherm::slam {
+
+struct PruneResult;  // prune.hpp
+
+/// One objective: which loops are true is what explains all measurements with the highest
+/// evidence. See docs/concepts/evidence.md.
+struct EvidenceOptions {
+  static std::string_view method() { return "evidence"; }
+  static std::string_view title() { return "The highest evidence"; }
+
+  /// A loop is pruned if it is true with a probability below this one, and kept if it is false
+  /// with a probability below it; in (0, 0.5).
+  double significance = 0.2;
+  /// Loops whose ends lie within this many vertices of each other, at both ends, can be one
+  /// run, which is accepted as a whole; > 0.
+  Index window = 20;
+  /// Learn factors on the covariances of odometry and of loops, and how heavy the tails of the
+  /// loops' errors are; without, the file is taken at its word.
+  bool calibrate = true;
+  int max_rounds = 200;  ///< moves at given scales at most, > 0
+
+  /// @throws InvalidArgument naming the field that is out of range.
+  void validate() const;
+};
+
+template <class Options, class Visitor>
+requires std::same_as<std::remove_const_t<Options>, EvidenceOptions>
+void visit_fields(Options& options, Visitor&& visit) {
+  visit("significance", options.significance,
+        "probability of being true below which a loop is pruned");
+  visit("window", options.window, "vertices within which the ends of loops of one run lie");
+  visit("calibrate", options.calibrate, "estimate the scale of the covariances from the data");
+  visit("max_rounds", options.max_rounds, "moves at given scales at most");
+}
+
+/// What is known of one candidate, given the verdicts on all others.
+struct EvidenceDetail {
+  double probability = 0.5;  ///< of being true
+  double log_ratio = 0.0;    ///< log of how much likelier true than false, without the prior
+  double chi2 = 0.0;         ///< against what odometry and the accepted loops predict
+  bool connected = true;     ///< false: neither odometry nor accepted loops join its ends
+};
+
+/// What one move did.
+struct EvidenceMove {
+  std::int64_t accepted = 0;
+  std::int64_t dropped = 0;
+  std::int64_t in_force = 0;  ///< accepted loops after the move
+};
+
+struct EvidenceResult {
+  /// One a candidate, in file order: score is the log odds that the loop is false, threshold
+  /// those from which it is pruned, stage "accepted", "rejected" or "unconnected".
+  spectral::EdgeVerdicts verdicts;
+  std::vector<EvidenceDetail> details;  ///< one a candidate
+  std::vector<EvidenceMove> moves;      ///< of all climbs, in order
+  double log_evidence = 0.0;            ///< of the verdicts; nats, up to a constant of the graph
+  double odometry_scale = 1.0;          ///< factor on the covariances of odometry, as learnt
+  double loop_scale = 1.0;              ///< the same of loops
+  /// Degrees of freedom of the Student distribution of the loops' errors; 1e6: normal.
+  double tail_dof = 1e6;
+  bool settled = true;  ///< false: max_rounds ended a climb
+};
+
+/// Finds the set of loops of the highest evidence by climbs from several scales, and how
+/// probable each loop is given the rest. Time is that of a sparse factorisation and of the
+/// covariances of the loops in question, a move.
+/// @throws InvalidArgument, NumericalError, Cancelled
+template <class Pose>
+EvidenceResult judge_by_evidence(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                                 const EvidenceOptions& options = {}, const RunContext& run = {});
+
+namespace detail {
+
+/// The door of the method's room, through which prune() comes.
+template <class Pose>
+PruneResult prune_by(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                     const EvidenceOptions& options, const RunContext& run);
+
+}  // namespace detail
+
+}  // namespace isotherm::slam

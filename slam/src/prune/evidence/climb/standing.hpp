@@ -1,0 +1,13 @@
+#pragma once
+
+namespace isotherm::slam::detail {
+
+/// How a loop stands under an explanation.
+struct Standing {
+  bool connected = false;  ///< odometry or other accepted loops join its ends
+  double chi2 = 0.0;       ///< against what they predict
+  double evidence = 0.0;   ///< log of how much likelier true than false, without the prior
+  double log_odds = 0.0;   ///< of true, with the prior
+};
+
+}  // namespace isotherm::slam::detail

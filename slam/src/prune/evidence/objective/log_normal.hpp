@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Cholesky>
+
+namespace isotherm::slam::detail {
+
+template <class Matrix>
+double log_determinant(const Eigen::LLT<Matrix>& factor) {
+  return 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+}
+
+/// log N(r; 0, S).
+template <class Pose>
+double log_normal(const typename Pose::Tangent& r, const typename Pose::Matrix& S) {
+  const Eigen::LLT<typename Pose::Matrix> factor(S);
+  return -0.5 * (r.dot(factor.solve(r)) + log_determinant(factor) +
+                 Pose::kDof * std::log(2.0 * std::numbers::pi));
+}
+
+}  // namespace isotherm::slam::detail
