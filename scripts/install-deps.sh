@@ -22,7 +22,7 @@ packages=(
 test_commands=("chromium chromium" "node nodejs" "npm npm")
 
 # What scripts/check.sh calls.
-check_packages=(clang-format-14 clang-tidy-14 shellcheck git)
+check_packages=(clang-format-14 clang-tidy-16 shellcheck git)
 
 usage() {
   cat <<'USAGE'
