@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Checks the sources without building them (clang-tidy 14 cannot read GCC 12's ranges): formatting, scripts, layers and rooms, and with
-# clang-tidy what differs from a base.
+# Checks the sources without building them: formatting, scripts, layers and rooms, and with
+# clang-tidy (16: 14 cannot read GCC 12's ranges) what differs from a base.
 # usage: scripts/check.sh [--quick | --all | --base REF]
 #   --quick     without clang-tidy
 #   --all       clang-tidy on every source (long)
