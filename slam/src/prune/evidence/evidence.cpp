@@ -10,7 +10,7 @@
 
 #include "graph/candidate_verdicts.hpp"
 #include "isotherm/base/error.hpp"
-#include "isotherm/base/statistics.hpp"
+#include "prune/consensus/judge/log_odds.hpp"
 #include "prune/evidence/climb/climb.hpp"
 
 namespace isotherm::slam {
@@ -19,9 +19,6 @@ namespace {
 using detail::CovarianceScale;
 using detail::Explanation;
 using spectral::Verdict;
-
-// log(p / (1 - p)).
-double log_odds_of(double probability) { return std::log(probability / (1.0 - probability)); }
 
 // Factors on the stated covariances of odometry and of loops to start from: one climb cannot
 // leave a sharp scale that explains a few loops and refutes the rest, nor a wide one.
@@ -59,7 +56,7 @@ std::string stage_of(bool accepted, const detail::Standing& standing) {
 template <class Pose>
 void report(const Explanation<Pose>& best, const std::vector<detail::Standing>& standings,
             double significance, EvidenceResult& result) {
-  const double decisive = log_odds_of(1.0 - significance);
+  const double decisive = detail::log_odds_of(1.0 - significance);
   result.details.resize(standings.size());
   for (std::size_t k = 0; k < standings.size(); ++k) {
     const auto& [connected, chi2, evidence, log_odds] = standings[k];

@@ -9,7 +9,7 @@
 
 #include "isotherm/base/random.hpp"
 #include "prune/evidence/climb/climb.hpp"
-#include "prune/evidence/objective/log_normal.hpp"
+#include "prune/consensus/estimate/log_normal.hpp"
 #include "slam/loop_graph.hpp"
 
 namespace isotherm::slam::detail {

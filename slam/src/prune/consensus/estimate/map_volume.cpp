@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "prune/consensus/estimate/log_normal.hpp"
+
 namespace isotherm::slam::detail {
 namespace {
 
@@ -22,11 +24,6 @@ constexpr double kLeastAspect = 0.05;
 
 // A map of one point has no size; any positive one serves.
 constexpr double kLeastExtent = 1e-3;
-
-template <class Matrix>
-double log_determinant(const Eigen::LLT<Matrix>& factor) {
-  return 2.0 * factor.matrixLLT().diagonal().array().log().sum();
-}
 
 }  // namespace
 

@@ -39,15 +39,23 @@ bool is_copy(const Link<Pose>& a, const Link<Pose>& b) {
 }
 
 template <class Pose>
-Evidence compare(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
-                 const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured,
-                 const MapVolume<Pose>& map) {
+PairResidual<Pose> pair_residual(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
+                                 const ForwardLoop<Pose>& known,
+                                 const ForwardLoop<Pose>& measured) {
   const auto before = along(graph, scale, measured.from, known.from);
   const auto after = along(graph, scale, known.to, measured.to);
   const auto predicted = compose(compose(before, known.measured), after);
   const typename Pose::Tangent r = (measured.measured.T.inverse() * predicted.T).log();
   const typename Pose::Matrix j = residual_jacobian<Pose>(r);
-  return weigh(r, measured.measured.covariance + j * predicted.covariance * j.transpose(), map);
+  return {r, measured.measured.covariance + j * predicted.covariance * j.transpose()};
+}
+
+template <class Pose>
+Evidence compare(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
+                 const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured,
+                 const MapVolume<Pose>& map) {
+  const auto [r, S] = pair_residual(graph, scale, known, measured);
+  return weigh(r, S, map);
 }
 
 template <class Pose>
@@ -69,6 +77,10 @@ template std::vector<ForwardLoop<Pose3>> forward_loops(const ReducedGraph<Pose3>
                                                        const CovarianceScale&);
 template bool is_copy(const Link<Pose2>&, const Link<Pose2>&);
 template bool is_copy(const Link<Pose3>&, const Link<Pose3>&);
+template PairResidual<Pose2> pair_residual(const ReducedGraph<Pose2>&, const CovarianceScale&,
+                                           const ForwardLoop<Pose2>&, const ForwardLoop<Pose2>&);
+template PairResidual<Pose3> pair_residual(const ReducedGraph<Pose3>&, const CovarianceScale&,
+                                           const ForwardLoop<Pose3>&, const ForwardLoop<Pose3>&);
 template Evidence compare(const ReducedGraph<Pose2>&, const CovarianceScale&,
                           const ForwardLoop<Pose2>&, const ForwardLoop<Pose2>&,
                           const MapVolume<Pose2>&);

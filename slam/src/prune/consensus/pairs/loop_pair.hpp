@@ -28,10 +28,22 @@ std::vector<ForwardLoop<Pose>> forward_loops(const ReducedGraph<Pose>& graph,
 template <class Pose>
 bool is_copy(const Link<Pose>& a, const Link<Pose>& b);
 
-/// How `measured` compares with what `known` and the two pieces of odometry between
+/// A loop's residual under another one, and its covariance.
+template <class Pose>
+struct PairResidual {
+  typename Pose::Tangent r;
+  typename Pose::Matrix S;
+};
+
+/// The residual of `measured` under what `known` and the two pieces of odometry between
 /// their ends predict. The prediction does not depend on the estimate, nor on how far
 /// odometry has drifted between the two ends of the loops. Both must run between the
 /// same chains.
+template <class Pose>
+PairResidual<Pose> pair_residual(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
+                                 const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured);
+
+/// How pair_residual() compares with a residual anywhere on the map.
 template <class Pose>
 Evidence compare(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
                  const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured,

@@ -103,12 +103,11 @@ void Climb<Pose>::grow() {
 // The peak: weights and poses in turn.
 template <class Pose>
 void Climb<Pose>::estimate() {
-  estimate_.weigh_loops(now_.weights);
-  estimate_.update(now_.accepted, now_.scale, kSteps);
-  for (int k = 0; k < kReweighings && reweigh_loops(); ++k) {
+  int reweighed = 0;
+  do {
     estimate_.weigh_loops(now_.weights);
     estimate_.update(now_.accepted, now_.scale, kSteps);
-  }
+  } while (reweighed++ < kReweighings && reweigh_loops());
 }
 
 // Whether any weight changed.

@@ -5,7 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
-#include "prune/evidence/objective/log_normal.hpp"
+#include "prune/consensus/estimate/log_normal.hpp"
 #include "prune/evidence/objective/student.hpp"
 
 namespace isotherm::slam::detail {

@@ -20,12 +20,6 @@ constexpr double kReach = 3.5;
 constexpr double kDeviationOfMad = 1.4826;  // of a normal distribution
 constexpr std::uint64_t kSeed = 1;
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 }  // namespace
 
 template <class Pose>
@@ -42,7 +36,7 @@ void NearDensity<Pose>::fit(const ReducedGraph<Pose>& graph) {
     std::vector<double> values;
     values.reserve(loops.size());
     for (const auto& loop : loops) values.push_back(value(loop.measured));
-    return median_of(std::move(values));
+    return quantile(std::move(values), 0.5);
   };
   Tangent turn = Tangent::Zero();
   for (int d = 0; d < Pose::kDim; ++d) {
@@ -52,11 +46,7 @@ void NearDensity<Pose>::fit(const ReducedGraph<Pose>& graph) {
     turn[d] = median_over([d](const auto& m) { return m.T.log()[d]; });
   }
   center_inverse_ = Pose::exp(turn).inverse();
-  const auto offset = [this](const Pose& T) {
-    Tangent d = (center_inverse_ * T).log();
-    d.template head<Pose::kDim>() = T.translation() - center_;
-    return d;
-  };
+  inverse_deviation_.setOnes();  // until each is known
   reach_ = 0.0;
   log_peak_ = -0.5 * Pose::kDof * std::log(2.0 * std::numbers::pi);
   for (int d = 0; d < Pose::kDof; ++d) {

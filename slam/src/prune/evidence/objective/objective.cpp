@@ -5,8 +5,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "prune/consensus/estimate/log_normal.hpp"
 #include "prune/consensus/estimate/map_volume.hpp"
-#include "prune/evidence/objective/log_normal.hpp"
 #include "prune/evidence/objective/scale_prior.hpp"
 
 namespace isotherm::slam::detail {

@@ -1,14 +1,13 @@
 #include "prune/evidence/objective/runs.hpp"
 
-#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <tuple>
 #include <utility>
 
+#include "prune/consensus/estimate/log_normal.hpp"
 #include "prune/consensus/pairs/loop_pair.hpp"
 #include "prune/consensus/pairs/near_pairs.hpp"
-#include "prune/evidence/objective/log_normal.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -35,21 +34,10 @@ template <class Pose>
 std::vector<double> Runs<Pose>::log_density(const CovarianceScale& scale) const {
   const auto loops = forward_loops(graph_, scale);
   std::vector<double> densities(loops.size(), 0.0);
-  const auto along = [&](Index from, Index to) {
-    auto path = graph_.odometry.relative(from, to);
-    path.covariance *= scale.odometry;
-    return path;
-  };
   for (std::size_t k = 0; k < loops.size(); ++k) {
     if (before_[k] == kNone) continue;
-    const auto& known = loops[before_[k]];
-    const auto& loop = loops[k];
-    const auto predicted =
-        compose(compose(along(loop.from, known.from), known.measured), along(known.to, loop.to));
-    const typename Pose::Tangent r = (loop.measured.T.inverse() * predicted.T).log();
-    const typename Pose::Matrix J = residual_jacobian<Pose>(r);
-    densities[k] =
-        log_normal<Pose>(r, loop.measured.covariance + J * predicted.covariance * J.transpose());
+    const auto [r, S] = pair_residual(graph_, scale, loops[before_[k]], loops[k]);
+    densities[k] = log_normal<Pose>(r, S);
   }
   return densities;
 }
