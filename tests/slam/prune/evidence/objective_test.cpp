@@ -8,8 +8,8 @@
 #include <Eigen/Dense>
 
 #include "isotherm/base/random.hpp"
-#include "prune/evidence/climb/climb.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
+#include "prune/evidence/climb/climb.hpp"
 #include "slam/loop_graph.hpp"
 
 namespace isotherm::slam::detail {
