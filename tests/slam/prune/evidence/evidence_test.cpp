@@ -56,7 +56,7 @@ TYPED_TEST(EvidenceOf, FindsFalseLoopsAndSaysHowSureItIs) {
       const auto& verdict = result.verdicts[k];
       const double probability = result.details[k].probability;
       EXPECT_EQ(verdict.verdict == Verdict::prune, verdict.score > verdict.threshold);
-      EXPECT_EQ(verdict.verdict == Verdict::prune, probability < 0.2);
+      EXPECT_EQ(verdict.verdict == Verdict::prune, probability < 0.01);
     }
   }
 }

@@ -23,12 +23,12 @@ struct EvidenceOptions {
 
   /// A loop is pruned if it is true with a probability below this one, and kept if it is false
   /// with a probability below it; in (0, 0.5).
-  double significance = 0.2;
+  double significance = 0.01;
   /// Loops whose ends lie within this many vertices of each other, at both ends, can be one
   /// run, which is accepted as a whole; > 0.
   Index window = 20;
-  /// Learn factors on the covariances of odometry and of loops, and how heavy the tails of the
-  /// loops' errors are; without, the file is taken at its word.
+  /// Learn factors on the covariances of odometry and of most loops; without, the file is taken
+  /// at its word.
   bool calibrate = true;
   int max_rounds = 200;  ///< moves at given scales at most, > 0
 
@@ -69,9 +69,9 @@ struct EvidenceResult {
   std::vector<EvidenceMove> moves;      ///< of all climbs, in order
   double log_evidence = 0.0;            ///< of the verdicts; nats, up to a constant of the graph
   double odometry_scale = 1.0;          ///< factor on the covariances of odometry, as learnt
-  double loop_scale = 1.0;              ///< the same of loops
-  /// Degrees of freedom of the Student distribution of the loops' errors; 1e6: normal.
-  double tail_dof = 1e6;
+  double loop_scale = 1.0;              ///< the same of most loops
+  /// Of the loops, those that are as accurate as the file states and not as most turn out to be.
+  double share_as_stated = 0.0;
   bool settled = true;  ///< false: max_rounds ended a climb
 };
 

@@ -26,35 +26,56 @@ Estimate<Pose>::Estimate(const ReducedGraph<Pose>& graph)
 }
 
 template <class Pose>
-void Estimate<Pose>::update(const std::vector<bool>& accepted, const CovarianceScale& scale,
-                            int max_steps) {
-  if (!equations_ || accepted != laid_out_for_) {
-    const PoseGraph<Pose> used = used_links(accepted);
-    join_components(used);
-    equations_.emplace(used, spectral::FactorForm::supernodal);
-    component_ = equations_->gauge().component;
-    component_count_ = equations_->gauge().component_count;
-    laid_out_for_ = accepted;
-  }
+void Estimate<Pose>::lay_out(const std::vector<bool>& accepted) {
+  if (equations_ && accepted == laid_out_for_) return;
+  const PoseGraph<Pose> used = used_links(accepted);
+  join_components(used);
+  equations_.emplace(used, spectral::FactorForm::supernodal);
+  component_ = equations_->gauge().component;
+  component_count_ = equations_->gauge().component_count;
+  laid_out_for_ = accepted;
+}
+
+template <class Pose>
+void Estimate<Pose>::linearize(const CovarianceScale& scale) {
   const auto step_count = static_cast<Index>(graph_.steps.size());
   const auto scaling = [&](Index link, double) {
     double weight = 1.0 / (link < step_count ? scale.odometry : scale.loops);
     if (link >= step_count && !weights_.empty()) weight *= weights_[used_loops_[link - step_count]];
     return EdgeScaling{weight, weight, 0.0};
   };
-  const Index loop_count = equations_->constraint_count() - step_count;
-  for (int step = 0;; ++step) {
-    equations_->linearize(poses_, scaling);
-    if (!equations_->hessian().factorise()) {
-      throw NumericalError("consensus", "the normal equations are not positive definite");
-    }
-    if (step == max_steps) return;
-    const Eigen::VectorXd move = equations_->hessian().solve(-equations_->gradient());
-    const double decrement = -move.dot(equations_->gradient());
-    equations_->retract(move, poses_);
-    // The Newton decrement is the squared length of the step in deviations.
-    if (decrement < kSettled * kSettled * static_cast<double>(1 + loop_count)) return;
+  equations_->linearize(poses_, scaling);
+  if (!equations_->hessian().factorise()) {
+    throw NumericalError("consensus", "the normal equations are not positive definite");
   }
+}
+
+// Whether it was one that does not matter. The Newton decrement is the squared length of the
+// step in deviations.
+template <class Pose>
+bool Estimate<Pose>::step() {
+  const Eigen::VectorXd move = equations_->hessian().solve(-equations_->gradient());
+  const double decrement = -move.dot(equations_->gradient());
+  equations_->retract(move, poses_);
+  return decrement < kSettled * kSettled * static_cast<double>(1 + used_loops_.size());
+}
+
+template <class Pose>
+void Estimate<Pose>::update(const std::vector<bool>& accepted, const CovarianceScale& scale,
+                            int max_steps) {
+  settle(accepted, scale, max_steps, [] { return false; });
+}
+
+template <class Pose>
+void Estimate<Pose>::settle(const std::vector<bool>& accepted, const CovarianceScale& scale,
+                            int max_steps, const std::function<bool()>& reweigh) {
+  lay_out(accepted);
+  for (int k = 0; k < max_steps; ++k) {
+    linearize(scale);
+    if (step() && !reweigh()) break;
+  }
+  reweigh();
+  linearize(scale);
 }
 
 template <class Pose>

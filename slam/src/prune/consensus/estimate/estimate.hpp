@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <utility>
@@ -12,6 +13,8 @@ namespace isotherm::slam::detail {
 
 /// Factors on the covariances the file states, as calibrated from the data.
 struct CovarianceScale {
+  bool operator==(const CovarianceScale&) const = default;
+
   double odometry = 1.0;
   double loops = 1.0;
 };
@@ -34,7 +37,12 @@ class Estimate {
   /// @throws NumericalError if the normal equations break down
   void update(const std::vector<bool>& accepted, const CovarianceScale& scale, int max_steps);
 
-  /// From the next update on the information of each loop is multiplied by its entry, if any.
+  /// The same, until weights settle too: whenever poses have, `reweigh` may call weigh_loops(),
+  /// and says whether any weight changed.
+  void settle(const std::vector<bool>& accepted, const CovarianceScale& scale, int max_steps,
+              const std::function<bool()>& reweigh);
+
+  /// From the next step on the information of each loop is multiplied by its entry, if any.
   void weigh_loops(std::vector<double> weights) { weights_ = std::move(weights); }
 
   const std::vector<Pose>& poses() const noexcept { return poses_; }
@@ -72,6 +80,9 @@ class Estimate {
   Index component_count() const noexcept { return component_count_; }
 
  private:
+  void lay_out(const std::vector<bool>& accepted);
+  void linearize(const CovarianceScale& scale);
+  bool step();
   PoseGraph<Pose> used_links(const std::vector<bool>& accepted);
   void join_components(const PoseGraph<Pose>& used);
 

@@ -7,6 +7,8 @@
 
 namespace isotherm::slam::detail {
 
+inline const double kLog2Pi = std::log(2.0 * std::numbers::pi);
+
 template <class Matrix>
 double log_determinant(const Eigen::LLT<Matrix>& factor) {
   return 2.0 * factor.matrixLLT().diagonal().array().log().sum();
@@ -16,8 +18,7 @@ double log_determinant(const Eigen::LLT<Matrix>& factor) {
 template <class Pose>
 double log_normal(const typename Pose::Tangent& r, const typename Pose::Matrix& S) {
   const Eigen::LLT<typename Pose::Matrix> factor(S);
-  return -0.5 * (r.dot(factor.solve(r)) + log_determinant(factor) +
-                 Pose::kDof * std::log(2.0 * std::numbers::pi));
+  return -0.5 * (r.dot(factor.solve(r)) + log_determinant(factor) + Pose::kDof * kLog2Pi);
 }
 
 }  // namespace isotherm::slam::detail

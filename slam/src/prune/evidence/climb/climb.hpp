@@ -3,26 +3,26 @@
 #include <vector>
 
 #include "isotherm/slam/prune/evidence.hpp"
-#include "prune/evidence/climb/standing.hpp"
-#include "prune/evidence/objective/loop_gain.hpp"
-#include "prune/evidence/objective/objective.hpp"
+#include "prune/evidence/climb/assessment.hpp"
+#include "prune/evidence/climb/learn.hpp"
 
 namespace isotherm::slam::detail {
 
 /// Climbs to an explanation of higher evidence, one move after the other: accept the loops and
 /// the runs of loops that raise it, the most certain first, since every one accepted sharpens
-/// what is predicted of the rest; drop those that lower it, the worst first; once
-/// neither is left, learn the scales and the tail from what is accepted.
+/// what is predicted of the rest; where some lower it, drop the worst or learn the scales and
+/// the tail from what is accepted, whichever gains more.
 template <class Pose>
 class Climb {
  public:
   using Selection = std::vector<Index>;
 
-  /// All must outlive this object. Starts with nothing accepted.
+  /// All must outlive this object.
   Climb(const Objective<Pose>& objective, const EvidenceOptions& options,
         const ProgressCallback& progress);
 
-  /// Climbs from nothing accepted, with `start` as the factors on the covariances.
+  /// Climbs from nothing accepted, with `start` as the factors on the covariances; the best
+  /// explanation on the way.
   Explanation<Pose> from(const CovarianceScale& start);
 
   /// What each loop is worth given all others of an explanation.
@@ -33,37 +33,27 @@ class Climb {
   bool settled() const noexcept { return settled_; }
 
  private:
-  using Matrix = typename Pose::Matrix;
-
   void start(const CovarianceScale& scale);
   void grow();
-  void estimate();
-  bool reweigh_loops();
-  void weigh();
-  void weigh_accepted();
-  void weigh_others();
-  void refresh(const Selection& loops);
-  Standing weigh(Index loop) const;
-  void add_prior();
+  bool move();
+  void assess();
   Selection misfits() const;
+  double gain_of_dropping(const Selection& loops) const;
+  void drop(const Selection& loops);
   Selection next_batch() const;
-  void forget_bounds();
-  double evidence();
-  bool rescale();
-  bool adapt_tail();
+  void accept(const Selection& loops);
+  bool learn_from_fit();
+  bool try_lesson(const Lesson& lesson);
+  void predict_runs();
+  void note(std::size_t accepted, std::size_t dropped);
   void tell_progress() const;
 
   const Objective<Pose>& objective_;
-  const ReducedGraph<Pose>& graph_;
   const EvidenceOptions& options_;
   const ProgressCallback& progress_;
-  Estimate<Pose> estimate_;
-  typename Estimate<Pose>::Layout odometry_;
-  double refuting_chi2_;
+  Assessment<Pose> assessment_;
   Explanation<Pose> now_;
-  typename Objective<Pose>::NearByClass near_{};
-  std::vector<Standing> standings_;
-  std::vector<Matrix> covariances_;  // of T_a^-1 T_b without the loop: an upper bound
+  Explanation<Pose> best_;
   std::vector<double> run_density_;  // log p(z | the loop before in its run)
   std::vector<int> drops_;
   std::vector<EvidenceMove> moves_;

@@ -15,10 +15,28 @@ namespace isotherm::slam::detail {
 namespace {
 
 constexpr std::size_t kMostPlaces = 20000;
-constexpr std::size_t kMostWeighed = 200000;
+constexpr std::size_t kMostWeighed = 50000;
 constexpr double kReach = 3.5;
 constexpr double kDeviationOfMad = 1.4826;  // of a normal distribution
 constexpr std::uint64_t kSeed = 1;
+
+// Median squared steps of odometry, in translation and in rotation, along one axis.
+template <class Pose>
+typename Pose::Tangent median_step(const OdometryChain<Pose>& odometry) {
+  std::vector<double> translations;
+  std::vector<double> rotations;
+  for (Index v = 1; v < odometry.vertex_count(); ++v) {
+    if (odometry.chain(v) != odometry.chain(v - 1)) continue;
+    const typename Pose::Tangent step = odometry.relative(v - 1, v).T.log();
+    translations.push_back(step.template head<Pose::kDim>().squaredNorm());
+    rotations.push_back(step.template tail<Pose::kDof - Pose::kDim>().squaredNorm());
+  }
+  typename Pose::Tangent square = Pose::Tangent::Zero();
+  if (translations.empty()) return square;
+  square.template head<Pose::kDim>().setConstant(quantile(std::move(translations), 0.5));
+  square.template tail<Pose::kDof - Pose::kDim>().setConstant(quantile(std::move(rotations), 0.5));
+  return square;
+}
 
 }  // namespace
 
@@ -28,10 +46,12 @@ NearDensity<Pose>::NearDensity(const ReducedGraph<Pose>& graph) {
   find_places(graph);
 }
 
-// Medians and median deviations, with the loops' own uncertainty.
+// Medians and median deviations, with the loops' own uncertainty. However well places are told
+// apart, the nearest pose to one is up to a step of odometry away.
 template <class Pose>
 void NearDensity<Pose>::fit(const ReducedGraph<Pose>& graph) {
   const auto loops = forward_loops(graph, {});
+  const Tangent step = median_step(graph.odometry);
   const auto median_over = [&loops](auto value) {
     std::vector<double> values;
     values.reserve(loops.size());
@@ -52,7 +72,8 @@ void NearDensity<Pose>::fit(const ReducedGraph<Pose>& graph) {
   for (int d = 0; d < Pose::kDof; ++d) {
     const double mad = median_over([&](const auto& m) { return std::abs(offset(m.T)[d]); });
     const double own = median_over([d](const auto& m) { return m.covariance(d, d); });
-    const double deviation = std::sqrt(kDeviationOfMad * mad * kDeviationOfMad * mad + own);
+    const double deviation =
+        std::sqrt(kDeviationOfMad * mad * kDeviationOfMad * mad + own + step[d]);
     inverse_deviation_[d] = 1.0 / deviation;
     log_peak_ -= std::log(deviation);
     if (d < Pose::kDim) reach_ = std::max(reach_, kReach * deviation);
@@ -111,12 +132,13 @@ std::array<double, kProposalClasses> NearDensity<Pose>::log_mean(
   inside.fill(0.5);
   std::array<double, kProposalClasses> pairs;
   pairs.fill(1.0);
+  const nanoflann::SearchParams unsorted(0, 0.0F, false);
   std::vector<std::pair<Eigen::Index, double>> near;
   std::size_t weighed = 0;
   for (const std::size_t a : anchors_) {
     if (weighed > kMostWeighed) break;
     const typename Pose::Translation point = at[a].translation();
-    tree.index->radiusSearch(point.data(), reach_ * reach_, near, {});
+    tree.index->radiusSearch(point.data(), reach_ * reach_, near, unsorted);
     weighed += near.size();
     for (const auto& [found, square] : near) {
       const auto b = static_cast<std::size_t>(found);

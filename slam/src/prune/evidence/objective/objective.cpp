@@ -1,7 +1,6 @@
 #include "prune/evidence/objective/objective.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include <Eigen/Cholesky>
 
@@ -11,8 +10,6 @@
 
 namespace isotherm::slam::detail {
 namespace {
-
-const double kLog2Pi = std::log(2.0 * std::numbers::pi);
 
 // log of the probability that exactly `kept` given ones of `all` loops are true.
 double log_beta_binomial(double kept, double all) {
@@ -43,39 +40,26 @@ double Objective<Pose>::log_alternative(Index loop, const NearByClass& near,
   return -0.5 * (log_sigma + Pose::kDof * kLog2Pi) - Pose::kDof;
 }
 
-// Densities of the accepted loops at the peak, and what Laplace's approximation misses of their
-// tails, as far as each determines where its ends are.
+// Log densities of the accepted loops at the peak, and of their scales.
 template <class Pose>
 double Objective<Pose>::loops_fit(const Explanation<Pose>& explanation,
                                   const Estimate<Pose>& estimate) const {
-  const double nu = explanation.nu;
-  const double log_scale = Pose::kDof * std::log(explanation.scale.loops);
-  double fit = 0.0;
-  std::vector<Index> loops;
+  const double scale = explanation.scale.loops;
+  double fit = explanation.scale_evidence + explanation.found.log_evidence();
   for (std::size_t k = 0; k < explanation.accepted.size(); ++k) {
     if (!explanation.accepted[k]) continue;
     const auto& link = graph_.loops[k];
     const typename Pose::Tangent r = estimate.residual(link);
-    const double chi2 = r.dot(link.information * r) / explanation.scale.loops;
-    fit += log_student(chi2, nu, Pose::kDof) - 0.5 * (log_sigma_[k] + log_scale);
-    if (link.a != link.b) loops.push_back(static_cast<Index>(k));
+    const double chi2 = explanation.weights[k] * r.dot(link.information * r) / scale;
+    fit -= 0.5 * (chi2 + log_sigma_[k] + Pose::kDof * (kLog2Pi + std::log(scale)));
   }
-  if (nu >= kGaussian) return fit;
-  const auto covariances = estimate.relative_covariances(loops);
-  double determined = 0.0;
-  for (std::size_t k = 0; k < loops.size(); ++k) {
-    const auto& link = graph_.loops[loops[k]];
-    const typename Pose::Matrix J = residual_jacobian<Pose>(estimate.residual(link));
-    determined += (link.information * J * covariances[k] * J.transpose()).trace() /
-                  explanation.scale.loops * explanation.weights[loops[k]];
-  }
-  return fit + determined / Pose::kDof * laplace_deficit(nu, Pose::kDof);
+  return fit;
 }
 
 template <class Pose>
 double Objective<Pose>::evidence(const Explanation<Pose>& explanation,
                                  const Estimate<Pose>& estimate, const NearByClass& near) const {
-  const auto& scale = explanation.scale;
+  const CovarianceScale& scale = explanation.scale;
   double alternatives = 0.0;
   double kept = 0.0;
   for (std::size_t k = 0; k < explanation.accepted.size(); ++k) {

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "prune/consensus/estimate/estimate.hpp"
+#include "prune/evidence/objective/error_scales.hpp"
 #include "prune/evidence/objective/near_density.hpp"
 #include "prune/evidence/objective/runs.hpp"
-#include "prune/evidence/objective/student.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -15,9 +15,11 @@ namespace isotherm::slam::detail {
 template <class Pose>
 struct Explanation {
   std::vector<bool> accepted;   ///< one a loop
-  CovarianceScale scale;        ///< factors on the stated covariances
-  std::vector<double> weights;  ///< of the loops' information, by their tails; one a loop
-  double nu = kGaussian;        ///< degrees of freedom of the loops' Student distribution
+  CovarianceScale scale;        ///< factors on the stated covariances; of loops, that of most
+  ScaleShares shares;           ///< of loops by how much worse they are, as believed
+  ScaleShares found;            ///< the same, as found among the accepted ones
+  std::vector<double> weights;  ///< of the loops' information, by their scales; one a loop
+  double scale_evidence = 0.0;  ///< ErrorScale::evidence, summed over the accepted ones
   typename Estimate<Pose>::Layout layout;
   double evidence = 0.0;  ///< Objective::evidence()
 };
@@ -26,10 +28,12 @@ struct Explanation {
 ///
 ///     log p(z_A | odometry, scales) - sum over A of log q_mean + log pi(A) + log pi(scales)
 ///
-/// with p by Laplace's approximation from the factor that the estimate holds,
-/// q_mean as in NearDensity, pi(A) the Beta-binomial of a fraction of which nothing is known,
-/// and pi(scales) log-normal around what the file states, a factor of ten in the standard
-/// deviation being one deviation. A part that A joins to another lies anywhere on the map.
+/// with p by Laplace's approximation from the factor that the estimate holds, q_mean as in
+/// NearDensity, pi(A) the Beta-binomial of a fraction of which nothing is known. The scales are
+/// log-normal around what the file states, a factor of ten in the standard deviation being one
+/// deviation. Which loops are worse than most (ScaleShares) is integrated out by variational
+/// Bayes (Bishop, Pattern Recognition and Machine Learning, 10.1), which gives a lower bound. A
+/// part that A joins to another lies anywhere on the map.
 ///
 /// The same number is what accepting the loops one by one adds (loop_gain), in any order.
 template <class Pose>
@@ -55,7 +59,7 @@ class Objective {
   /// log of the volume of relative poses that the map of odometry allows.
   double log_volume() const noexcept { return log_volume_; }
 
-  /// `estimate` must have been updated with the explanation's loops and scales.
+  /// `estimate` must have settled on the explanation's loops, scales and weights.
   double evidence(const Explanation<Pose>& explanation, const Estimate<Pose>& estimate,
                   const NearByClass& near) const;
 

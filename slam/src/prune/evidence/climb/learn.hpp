@@ -1,0 +1,22 @@
+#pragma once
+
+#include "prune/evidence/climb/assessment.hpp"
+
+namespace isotherm::slam::detail {
+
+/// How accurate the measurements of an explanation turn out to be.
+struct Lesson {
+  CovarianceScale scale;
+  ScaleShares shares;
+  double gain = 0.0;  ///< of evidence, with the residuals held
+};
+
+/// The factors on the covariances of odometry and of loops at which the evidence is highest, to
+/// first order: variance components (Helmert), cost over redundancy, drawn towards the file by
+/// log_scale_prior(); a loop's share of the redundancy is tr(I - w Omega J C J'). And the shares
+/// of loops worse than most under which the residuals are likeliest (expectation maximisation).
+template <class Pose>
+Lesson learn(const Objective<Pose>& objective, const Assessment<Pose>& assessment,
+             const Explanation<Pose>& explanation);
+
+}  // namespace isotherm::slam::detail
