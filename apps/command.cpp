@@ -1,11 +1,17 @@
 #include "command.hpp"
 
-#include <fstream>
-
 #include "isotherm/base/error.hpp"
+#include "isotherm/base/output_group.hpp"
 #include "isotherm/base/text_writer.hpp"
+#include "json_file.hpp"
 
 namespace isotherm::apps {
+namespace {
+
+// More than any machine has; what is beyond its cores plays no part.
+constexpr double kMostThreads = 1024;
+
+}  // namespace
 
 Verb one_of(CLI::App* parent, std::vector<Verb> subcommands) {
   parent->require_subcommand(1);
@@ -19,41 +25,46 @@ Verb one_of(CLI::App* parent, std::vector<Verb> subcommands) {
 
 void add_common_flags(CLI::App& verb, CommonFlags& flags) {
   const auto group = [](CLI::Option* option) { option->group("Common"); };
-  group(verb.add_option("--json", flags.json, "write the result as JSON (- for stdout)")
-            ->type_name("FILE"));
+  group(flags.outputs.add(verb, "--json", flags.json, "write the result as JSON (- for stdout)",
+                          {".json"}));
   group(verb.add_option("--config", flags.config, "take option values from a JSON file")
             ->type_name("FILE"));
   group(verb.add_flag("--dump-config", flags.dump_config,
                       "print the options in force as JSON and stop"));
   group(verb.add_flag("--strict", flags.strict, "treat every repair of the input as an error"));
   group(verb.add_option("--seed", flags.seed, "seed of all random choices")->capture_default_str());
-  group(verb.add_option("--threads", flags.threads, "threads to use; 0: all cores")
-            ->capture_default_str()
-            ->check(CLI::NonNegativeNumber));
+  group(add_number(verb, "--threads", flags.threads,
+                   "threads to use, at most one a core; 0: all cores", closed(0, kMostThreads))
+            ->default_str("0"));
   group(verb.add_flag("-q,--quiet", flags.quiet, "say nothing on stderr but errors"));
   group(verb.add_flag("-v,--verbose", flags.verbose, "say more on stderr"));
   group(verb.add_flag("--no-progress", flags.no_progress, "draw no progress line"));
 }
 
+int run_with_outputs(const CommonFlags& flags, const std::function<int()>& run) {
+  flags.outputs.check();
+  OutputGroup group;
+  const int code = run();
+  group.commit();
+  return code;
+}
+
 Json read_config(const CommonFlags& flags) {
   if (flags.config.empty()) return Json::object();
-  std::ifstream file(flags.config);
-  if (!file) throw FileError(flags.config, "cannot be opened");
-  Json config;
-  try {
-    config = Json::parse(file);
-  } catch (const nlohmann::json::parse_error& error) {
-    throw ParseError({flags.config, 0, 0}, "", std::string("is not valid JSON: ") + error.what());
-  }
+  auto config = read_json(flags.config);
   if (!config.is_object()) throw ParseError({flags.config, 0, 0}, "", "must hold a JSON object");
   return config;
 }
 
+void write_text(const std::string& path, std::string_view text) {
+  OutputFile file(path);
+  file.write(text);
+  file.commit();
+}
+
 void write_json(const std::string& path, const Json& json) {
   if (path.empty()) return;
-  OutputFile file(path);
-  file.write(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-  file.commit();
+  write_text(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace isotherm::apps

@@ -1,24 +1,17 @@
 #include "console.hpp"
 
+#include <cerrno>
 #include <chrono>
-#include <csignal>
-#include <cstdio>
 #include <memory>
 #include <string>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "interruption.hpp"
+
 namespace isotherm::apps {
 namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
-
-void on_interrupt(int) {
-  // A second Ctrl-C ends the process at once, should a step take too long.
-  std::signal(SIGINT, SIG_DFL);
-  interrupted = 1;
-}
 
 // Redraws at most ten times a second and erases itself when a stage is done.
 class ProgressLine {
@@ -42,16 +35,14 @@ class ProgressLine {
         progress.total > 0 ? fmt::format("{:3.0f} %", 100.0 * static_cast<double>(progress.done) /
                                                           static_cast<double>(progress.total))
                            : fmt::format("{}", progress.done);
-    fmt::print(stderr, "\r\033[K{}: {}", progress.stage, amount);
-    std::fflush(stderr);
+    put(fmt::format("\r\033[K{}: {}", progress.stage, amount));
     drawn_ = true;
   }
 
  private:
   void erase() {
     if (!drawn_) return;
-    fmt::print(stderr, "\r\033[K");
-    std::fflush(stderr);
+    put("\r\033[K");
     drawn_ = false;
   }
 
@@ -62,12 +53,23 @@ class ProgressLine {
 
 }  // namespace
 
+void put(std::string_view text) noexcept {
+  while (!text.empty()) {
+    const auto written = ::write(STDERR_FILENO, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return;
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void complain(std::string_view problem) { put(fmt::format("isotherm: {}\n", problem)); }
+
 void say(const CommonFlags& flags, std::string_view line) {
-  if (!flags.quiet) fmt::print(stderr, "{}\n", line);
+  if (!flags.quiet) put(fmt::format("{}\n", line));
 }
 
 void warn(const CommonFlags& flags, std::string_view line) {
-  if (!flags.quiet) fmt::print(stderr, "warning: {}\n", line);
+  if (!flags.quiet) put(fmt::format("warning: {}\n", line));
 }
 
 void detail_line(const CommonFlags& flags, std::string_view line) {
@@ -79,10 +81,8 @@ ProgressCallback progress_line(const CommonFlags& flags) {
   const auto line = std::make_shared<ProgressLine>(visible);
   return [line](const Progress& progress) {
     line->draw(progress);
-    return interrupted == 0;
+    return !interrupted();
   };
 }
-
-void stop_cleanly_on_interrupt() { std::signal(SIGINT, on_interrupt); }
 
 }  // namespace isotherm::apps

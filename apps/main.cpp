@@ -1,12 +1,13 @@
 #include <exception>
+#include <string_view>
 #include <vector>
 
-#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "command.hpp"
 #include "console.hpp"
 #include "help_formatter.hpp"
+#include "interruption.hpp"
 #include "isotherm/base/error.hpp"
 #include "serial_openmp.hpp"
 #include "verbs/verbs.hpp"
@@ -14,8 +15,8 @@
 namespace isotherm::apps {
 namespace {
 
-int complain(const std::exception& error, int code) {
-  fmt::print(stderr, "isotherm: {}\n", error.what());
+int failed(std::string_view problem, int code) {
+  complain(problem);
   return code;
 }
 
@@ -24,23 +25,23 @@ int run_guarded(const Verb& verb) {
   try {
     return verb.run();
   } catch (const InvalidArgument& error) {
-    return complain(error, kUsage);
+    return failed(error.what(), kUsage);
   } catch (const ParseError& error) {
-    return complain(error, kBadInput);
+    return failed(error.what(), kBadInput);
   } catch (const FileError& error) {
-    return complain(error, kBadInput);
+    return failed(error.what(), kBadInput);
   } catch (const Cancelled&) {
-    fmt::print(stderr, "isotherm: interrupted; nothing was written\n");
+    say_interrupted();
     return kInterrupted;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "isotherm: out of memory\n");
-    return kFailure;
+    return failed("out of memory", kFailure);
   } catch (const std::exception& error) {
-    return complain(error, kFailure);
+    return failed(error.what(), kFailure);
   }
 }
 
 int run(int argc, char** argv) {
+  settle_streams();
   CLI::App root("Isotherm: finds and removes the edges that do not belong in a geometric graph",
                 "isotherm");
   root.set_version_flag("--version", ISOTHERM_VERSION);
@@ -56,7 +57,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return root.exit(error) == 0 ? kOk : kUsage;
   } catch (const InvalidArgument& error) {
-    return complain(error, kUsage);
+    return failed(error.what(), kUsage);
   }
 
   stop_cleanly_on_interrupt();

@@ -2,31 +2,26 @@
 
 #include <filesystem>
 
-#include "isotherm/base/text_writer.hpp"
+#include "isotherm/base/error.hpp"
 #include "report/report_json.hpp"
 #include "report/report_page.hpp"
 #include "report/report_svg.hpp"
 
 namespace isotherm::apps {
-namespace {
-
-void write_text(const std::string& path, const std::string& text) {
-  OutputFile file(path);
-  file.write(text);
-  file.commit();
+void ReportFlags::add_to(CLI::App& verb, OutputFlags& outputs) {
+  outputs.add(verb, "--report", report,
+              "page that explains the run, or, if named .json, the document it shows",
+              {".html", ".json"});
+  outputs.add(verb, "--svg", svg, "the map as a plain SVG picture", {".svg"});
 }
 
-}  // namespace
-
-void ReportFlags::add_to(CLI::App& verb) {
-  verb.add_option("--report", report,
-                  "page that explains the run, or, if named .json, the document it shows")
-      ->type_name("FILE");
-  verb.add_option("--svg", svg, "the map as a plain SVG picture")->type_name("FILE");
+void ReportFlags::require_wanted(const std::string& flag) const {
+  if (!wanted()) throw InvalidArgument(flag, "is for the report: it needs --report or --svg");
 }
 
 void write_report_document(const std::string& path, const Json& document) {
-  write_text(path, path.ends_with(".json") ? report_text(document) + "\n" : report_page(document));
+  write_text(path,
+             format_suffix(path) == ".json" ? report_text(document) + "\n" : report_page(document));
 }
 
 void write_report(const ReportFlags& flags, const Report& report) {

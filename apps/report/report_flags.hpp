@@ -12,8 +12,11 @@ struct ReportFlags {
   std::string report;  ///< path of the page, or of the document if it ends in .json
   std::string svg;     ///< path of the picture
 
-  void add_to(CLI::App& verb);
+  void add_to(CLI::App& verb, OutputFlags& outputs);
   bool wanted() const { return !report.empty() || !svg.empty(); }
+
+  /// @throws InvalidArgument naming `flag`, which serves reports only, if there is none
+  void require_wanted(const std::string& flag) const;
 };
 
 /// Writes what the flags ask for.

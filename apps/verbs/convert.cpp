@@ -11,6 +11,7 @@
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm/slam/io/trajectory_file.hpp"
 #include "isotherm/spectral/graph/graph_file.hpp"
+#include "option_verb.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {
@@ -44,13 +45,13 @@ spectral::GraphFile structure_of(const slam::PoseGraph<Pose>& graph) {
   return {{graph.vertex_count(), std::move(edges)}, graph.ids, {}};
 }
 
-struct ConvertVerb {
-  CommonFlags flags;
+struct ConvertVerb : OptionVerb<NoOptions> {
   std::string input;
   std::string output;
   std::string to;
 
-  int run() const {
+  int run() {
+    if (resolve_or_dump()) return kOk;
     const FileFormat target = target_format();
     TextReader reader(input);
     const auto source = slam::require_format(reader);
@@ -77,21 +78,21 @@ struct ConvertVerb {
   }
 
   ReadReport convert(TextReader& reader, FileFormat source, FileFormat target) const {
-    const ReadOptions options{.strict = flags.strict};
+    const ReadOptions reading{.strict = flags.strict};
     const bool to_ranges = target == FileFormat::ranges || target == FileFormat::pyfg;
     switch (slam::content_of(source)) {
       case FileContent::ranges:
         if (source == FileFormat::pyfg && !to_ranges) break;  // its poses are wanted
-        return convert_ranges(network::read_ranges(reader, options), target);
+        return convert_ranges(network::read_ranges(reader, reading), target);
       case FileContent::trajectory:
-        return convert_trajectory(slam::read_trajectory(reader, source, options), target);
+        return convert_trajectory(slam::read_trajectory(reader, source, reading), target);
       case FileContent::graph:
-        return convert_graph(spectral::read_graph(reader, options), target);
+        return convert_graph(spectral::read_graph(reader, reading), target);
       case FileContent::pose_graph:
       case FileContent::unknown:
         break;
     }
-    return convert_pose_graph(slam::read_pose_graph(reader, source, options), target);
+    return convert_pose_graph(slam::read_pose_graph(reader, source, reading), target);
   }
 
   [[noreturn]] void refuse(const ReadReport& report, FileFormat target) const {
@@ -158,16 +159,16 @@ Verb add_convert(CLI::App& root) {
   verb->add_option("input", convert->input,
                    "pose graph, trajectory, ranges or plain graph (- for stdin)")
       ->required();
-  verb->add_option("-o,--output", convert->output, "file to write (- for stdout)")
-      ->required()
-      ->type_name("FILE");
+  convert->flags.outputs
+      .add(*verb, "-o,--output", convert->output, "file to write (- for stdout)", {})
+      ->required();
   verb->add_option("--to", convert->to,
                    "g2o, toro, tum, kitti, euroc, planar, pyfg, ranges, edges or matrix-market; "
                    "by default what the output's suffix says (.g2o .graph .tum .kitti .euroc "
                    ".pyfg .mtx)")
       ->type_name("FORMAT");
-  add_common_flags(*verb, convert->flags);
-  return {verb, [convert] { return convert->run(); }};
+  convert->add_flags(*verb);
+  return verb_of(verb, convert);
 }
 
 }  // namespace isotherm::apps

@@ -77,15 +77,16 @@ Verb add_corrupt(CLI::App& root) {
   auto corrupt = std::make_shared<CorruptVerb>();
   CLI::App* verb = root.add_subcommand("corrupt", "add false loop closures to a pose graph");
   verb->add_option("input", corrupt->input, "clean pose graph (- for stdin)")->required();
-  verb->add_option("-o,--output", corrupt->output, "pose graph to write (- for stdout)")
-      ->required()
-      ->type_name("FILE");
-  verb->add_option("--labels", corrupt->labels, "labels to write, as CSV")->type_name("FILE");
+  auto& outputs = corrupt->flags.outputs;
+  outputs
+      .add(*verb, "-o,--output", corrupt->output, "pose graph to write (- for stdout)", {".g2o"})
+      ->required();
+  outputs.add(*verb, "--labels", corrupt->labels, "labels to write, as CSV", {".csv"});
   verb->add_option("--ground-truth", corrupt->ground_truth,
                    "true poses as g2o; without it the input's own poses count as true")
       ->type_name("FILE");
   corrupt->add_flags(*verb);
-  return {verb, [corrupt] { return corrupt->run(); }};
+  return verb_of(verb, corrupt);
 }
 
 }  // namespace isotherm::apps

@@ -131,11 +131,13 @@ Verb add_edges(CLI::App& root) {
   CLI::App* verb = root.add_subcommand("edges", "remove false edges from a weighted graph");
   verb->add_option("input", edges->input, "edge list, MatrixMarket or point file (- for stdin)")
       ->required();
-  auto* neighbours = verb->add_option("--neighbours", edges->neighbours,
-                                      "the input is points: join each to so many nearest ones")
-                         ->type_name("COUNT");
-  auto* radius = verb->add_option("--radius", edges->radius,
-                                  "the input is points: join those at most so far from each other")
+  auto* neighbours =
+      add_number(*verb, "--neighbours", edges->neighbours,
+                 "the input is points: join each to so many nearest ones", closed(1, 1e6))
+          ->type_name("COUNT");
+  auto* radius = add_number(*verb, "--radius", edges->radius,
+                            "the input is points: join those at most so far from each other",
+                            left_open(0, 1e12))
                      ->type_name("DISTANCE")
                      ->excludes(neighbours);
   verb->add_option("--positions", edges->positions,
@@ -143,15 +145,16 @@ Verb add_edges(CLI::App& root) {
       ->type_name("FILE")
       ->excludes(neighbours)
       ->excludes(radius);
-  verb->add_option("-o,--output", edges->output, "kept edges to write, as CSV (- for stdout)")
-      ->type_name("FILE");
-  verb->add_option("--verdicts", edges->verdicts, "decision and reason an edge, as CSV")
-      ->type_name("FILE");
+  auto& outputs = edges->flags.outputs;
+  outputs.add(*verb, "-o,--output", edges->output, "kept edges to write, as CSV (- for stdout)",
+              {".csv"});
+  outputs.add(*verb, "--verdicts", edges->verdicts, "decision and reason an edge, as CSV",
+              {".csv"});
   verb->add_flag("--keep-ambiguous", edges->keep_ambiguous,
                  "keep edges that are not proven either way, such as bridges");
-  edges->explain.add_to(*verb);
+  edges->explain.add_to(*verb, outputs);
   edges->add_flags(*verb);
-  return {verb, [edges] { return edges->run(); }};
+  return verb_of(verb, edges);
 }
 
 }  // namespace isotherm::apps

@@ -33,20 +33,15 @@ struct EmbedOptions {
   double scale = 1.0;           // diffusion time, for heat; finite, >= 0
   LaplacianKind laplacian = LaplacianKind::combinatorial;
 
-  void validate() const {
-    if (dimensions < 1) throw InvalidArgument("dimensions", "must be at least 1");
-    if (!std::isfinite(scale) || scale < 0.0) {
-      throw InvalidArgument("scale", "must be finite and not negative");
-    }
-  }
+  void validate() const { require_fields_in_range(*this); }
 };
 
 template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, EmbedOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("method", options.method, "coordinates to compute");
-  visit("dimensions", options.dimensions, "number of coordinates");
-  visit("scale", options.scale, "heat: diffusion time");
+  visit("dimensions", options.dimensions, "number of coordinates", closed(1, 1e6));
+  visit("scale", options.scale, "heat: diffusion time", closed(0, 1e12));
   visit("laplacian", options.laplacian, "matrix whose eigenvectors are used");
 }
 
@@ -103,7 +98,6 @@ struct EmbedVerb : OptionVerb<EmbedOptions> {
 
   int run() {
     if (resolve_or_dump()) return kOk;
-    options.validate();
     const auto file = read_graph(input, {.strict = flags.strict});
     for (const auto& diagnostic : file.report.diagnostics) warn(flags, to_string(diagnostic));
     const Laplacian laplacian(file.graph, options.laplacian);
@@ -119,9 +113,7 @@ struct EmbedVerb : OptionVerb<EmbedOptions> {
     const auto eigen = smallest_eigenpairs(laplacian, eigen_options);
     const auto rows = coordinates(eigen, options);
     report(eigen, laplacian.components().count);
-    OutputFile out(output);
-    out.write(output.ends_with(".npy") ? npy_text(rows) : csv_text(rows, file.ids));
-    out.commit();
+    write_text(output, format_suffix(output) == ".npy" ? npy_text(rows) : csv_text(rows, file.ids));
     write_json(flags.json, to_json(eigen, laplacian.components().count));
     return eigen.status == EigenStatus::converged ? kOk : kNotConverged;
   }
@@ -161,12 +153,12 @@ Verb add_embed(CLI::App& root) {
   CLI::App* verb = root.add_subcommand("embed", "give the vertices of a graph coordinates");
   verb->add_option("input", embed->input, "edge list or MatrixMarket file (- for stdin)")
       ->required();
-  verb->add_option("-o,--output", embed->output,
-                   "coordinates to write: CSV, or NumPy if named .npy (- for stdout)")
-      ->required()
-      ->type_name("FILE");
+  embed->flags.outputs
+      .add(*verb, "-o,--output", embed->output,
+           "coordinates to write: CSV, or NumPy if named .npy (- for stdout)", {".csv", ".npy"})
+      ->required();
   embed->add_flags(*verb);
-  return {verb, [embed] { return embed->run(); }};
+  return verb_of(verb, embed);
 }
 
 }  // namespace isotherm::apps

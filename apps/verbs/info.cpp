@@ -1,7 +1,7 @@
 #include <memory>
 
-#include "isotherm/base/text_writer.hpp"
 #include "isotherm/slam/io/file_format.hpp"
+#include "option_verb.hpp"
 #include "verbs/describe.hpp"
 #include "verbs/verbs.hpp"
 
@@ -10,17 +10,13 @@ namespace {
 
 using slam::FileContent;
 
-struct InfoVerb {
-  CommonFlags flags;
+struct InfoVerb : OptionVerb<NoOptions> {
   std::string input;
 
-  int run() const {
+  int run() {
+    if (resolve_or_dump()) return kOk;
     const Json description = read_and_describe();
-    if (flags.json != "-") {
-      OutputFile text("-");
-      text.write(to_text(description));
-      text.commit();
-    }
+    if (flags.json != "-") write_text("-", to_text(description));
     write_json(flags.json, description);
     return kOk;
   }
@@ -29,28 +25,28 @@ struct InfoVerb {
   Json read_and_describe() const {
     TextReader reader(input);
     const auto format = slam::require_format(reader);
-    const ReadOptions options{.strict = flags.strict};
+    const ReadOptions reading{.strict = flags.strict};
     switch (slam::content_of(format)) {
       case FileContent::trajectory:
-        return describe(slam::read_trajectory(reader, format, options));
+        return describe(slam::read_trajectory(reader, format, reading));
       case FileContent::graph:
-        return describe(spectral::read_graph(reader, options));
+        return describe(spectral::read_graph(reader, reading));
       case FileContent::ranges:
-        return describe_ranges(reader, format, options);
+        return describe_ranges(reader, format, reading);
       case FileContent::pose_graph:
       case FileContent::unknown:
         break;
     }
-    return describe(slam::read_pose_graph(reader, format, options));
+    return describe(slam::read_pose_graph(reader, format, reading));
   }
 
   // A PyFG file may hold a pose graph beside the ranges; it takes a second pass,
   // which standard input does not allow.
   Json describe_ranges(TextReader& reader, slam::FileFormat format,
-                       const ReadOptions& options) const {
-    Json json = describe(network::read_ranges(reader, options));
+                       const ReadOptions& reading) const {
+    Json json = describe(network::read_ranges(reader, reading));
     if (format == slam::FileFormat::pyfg && input != "-") {
-      Json graph = describe(slam::read_pose_graph(input, options));
+      Json graph = describe(slam::read_pose_graph(input, reading));
       graph.erase("schema");
       json["pose_graph"] = std::move(graph);
     }
@@ -66,8 +62,8 @@ Verb add_info(CLI::App& root) {
   verb->add_option("input", info->input,
                    "pose graph, trajectory, ranges or plain graph (- for stdin)")
       ->required();
-  add_common_flags(*verb, info->flags);
-  return {verb, [info] { return info->run(); }};
+  info->add_flags(*verb);
+  return verb_of(verb, info);
 }
 
 }  // namespace isotherm::apps

@@ -57,14 +57,14 @@ Verb add_label(CLI::App& root) {
   verb->add_option("--timestamps", label->truth.timestamps,
                    "time of each vertex in seconds, one a line")
       ->type_name("FILE");
-  verb->add_option("--max-gap", label->truth.max_gap,
-                   "seconds to the nearest sample beyond which there is no truth; 0: any")
-      ->capture_default_str();
-  verb->add_option("-o,--output", label->output, "labels to write, as CSV (- for stdout)")
-      ->required()
-      ->type_name("FILE");
+  add_number(*verb, "--max-gap", label->truth.max_gap,
+             "seconds to the nearest sample beyond which there is no truth; 0: any", closed(0, 1e9))
+      ->default_str("0");
+  label->flags.outputs
+      .add(*verb, "-o,--output", label->output, "labels to write, as CSV (- for stdout)", {".csv"})
+      ->required();
   label->add_flags(*verb);
-  return {verb, [label] { return label->run(); }};
+  return verb_of(verb, label);
 }
 
 }  // namespace isotherm::apps

@@ -46,12 +46,14 @@ struct LocalizeVerb : OptionVerb<LocalizeOptions> {
     if (resolve_or_dump()) return kOk;
     options.threads = flags.threads;
     options.progress = progress_line(flags);
+    if (!truth.empty()) explain.require_wanted("--ground-truth");
     const auto network = read_network();
+    const auto known = true_positions(network);
     auto result = localize(network, options);
     report(network, result);
     if (!output.empty()) write_positions(output, network, result);
     if (explain.wanted()) {
-      const LocalizeRun run{file_title(input), options, true_positions(network)};
+      const LocalizeRun run{file_title(input), options, known};
       write_report(explain, network_report(network, result, run));
     }
     if (!verdicts.empty()) {
@@ -183,17 +185,17 @@ Verb add_localize(CLI::App& root) {
                    "2 or 3; 0: that of the anchors, or of the input's kind")
       ->check(CLI::IsMember({0, 2, 3}))
       ->capture_default_str();
-  verb->add_option("-o,--output", localize->output,
-                   "positions, status and covariance of all nodes to write, as CSV")
-      ->type_name("FILE");
-  verb->add_option("--verdicts", localize->verdicts, "decision and reason a range, as CSV")
-      ->type_name("FILE");
-  localize->explain.add_to(*verb);
+  auto& outputs = localize->flags.outputs;
+  outputs.add(*verb, "-o,--output", localize->output,
+              "positions, status and covariance of all nodes to write, as CSV", {".csv"});
+  outputs.add(*verb, "--verdicts", localize->verdicts, "decision and reason a range, as CSV",
+              {".csv"});
+  localize->explain.add_to(*verb, outputs);
   verb->add_option("--ground-truth", localize->truth,
                    "true positions, as CSV with node,x,y[,z], for the report")
       ->type_name("FILE");
   localize->add_flags(*verb);
-  return {verb, [localize] { return localize->run(); }};
+  return verb_of(verb, localize);
 }
 
 }  // namespace isotherm::apps

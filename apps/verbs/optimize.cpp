@@ -36,7 +36,7 @@ struct OptimizeVerb : OptionVerb<OptimizeOptions> {
         optimize(graph, roles, options, {flags.threads, progress_line(flags), flags.seed});
     report(result);
     graph.poses = result.poses;
-    if (output.ends_with(".tum")) {
+    if (format_suffix(output) == ".tum") {
       write_trajectory(output, Trajectory<Pose>{graph.poses, {}}, FileFormat::tum);
     } else if (!output.empty()) {
       write_g2o(output, file);
@@ -84,14 +84,14 @@ Verb add_optimize(CLI::App& root) {
   auto optimize = std::make_shared<OptimizeVerb>();
   CLI::App* verb = root.add_subcommand("optimize", "find the poses that fit a pose graph best");
   verb->add_option("input", optimize->input, "pose graph (- for stdin)")->required();
-  verb->add_option("-o,--output", optimize->output,
-                   "optimised pose graph (g2o; - for stdout), or trajectory if it ends in .tum")
-      ->type_name("FILE");
+  optimize->flags.outputs.add(
+      *verb, "-o,--output", optimize->output,
+      "optimised pose graph (g2o; - for stdout), or trajectory if named .tum", {".g2o", ".tum"});
   verb->add_option("--trusted", optimize->trusted,
                    "CSV of edges to trust in place of odometry (edge, or from,to)")
       ->type_name("FILE");
   optimize->add_flags(*verb);
-  return {verb, [optimize] { return optimize->run(); }};
+  return verb_of(verb, optimize);
 }
 
 }  // namespace isotherm::apps

@@ -121,6 +121,8 @@ struct PruneVerb {
       write_json("-", options_to_json(options.prune));
       return kOk;
     }
+    std::visit([](const auto& own) { own.validate(); }, options.prune);
+    require_use_of_truth();
     if (!explain.wanted()) options.optimize.reset();
     auto file = read_input_graph(input, flags);
     std::visit([&](auto& graph) { run_on(graph, file); }, file.graph);
@@ -132,10 +134,12 @@ struct PruneVerb {
   void run_on(PoseGraph<Pose>& graph, const PoseGraphFile& file) {
     const RunContext context{flags.threads, progress_line(flags), flags.seed};
     const auto roles = trusted.empty() ? edge_roles(graph) : read_trusted_edges(trusted, graph);
+    PruneRun<Pose> input_run{file_title(input), options, {}};
+    if (!truth.path.empty()) input_run.truth = read_ground_truth(graph, truth);
     auto result = prune_and_optimize(graph, roles, options, context);
     report(result.decisions);
     std::optional<Report> page;
-    if (explain.wanted()) page = explained(graph, result, context);
+    if (explain.wanted()) page = pose_graph_report(graph, result, input_run, context);
     // Poses stay as they came: they are for 'optimize' to find.
     graph.constraints = std::move(result.pruned.constraints);
     if (!output.empty()) write_g2o(output, file);
@@ -144,12 +148,12 @@ struct PruneVerb {
     if (page) write_report(explain, *page);
   }
 
-  template <class Pose>
-  Report explained(const PoseGraph<Pose>& graph, const PipelineResult<PoseGraph<Pose>>& result,
-                   const RunContext& context) const {
-    PruneRun<Pose> run{file_title(input), options, {}};
-    if (!truth.path.empty()) run.truth = read_ground_truth(graph, truth);
-    return pose_graph_report(graph, result, run, context);
+  // What would be read and play no part is not what was meant.
+  void require_use_of_truth() const {
+    if (!truth.path.empty()) explain.require_wanted("--ground-truth");
+    if (!truth.timestamps.empty() && truth.path.empty()) {
+      throw InvalidArgument("--timestamps", "are those of --ground-truth, which is missing");
+    }
   }
 
   void report(const PruneResult& result) const {
@@ -176,16 +180,16 @@ Verb add_prune(CLI::App& root) {
   auto prune = std::make_shared<PruneVerb>();
   CLI::App* verb = root.add_subcommand("prune", "remove false loop closures from a pose graph");
   verb->add_option("input", prune->input, "pose graph (- for stdin)")->required();
-  verb->add_option("-o,--output", prune->output, "pruned pose graph to write (- for stdout)")
-      ->type_name("FILE");
-  verb->add_option("--verdicts", prune->verdicts, "decision and reason a loop, as CSV")
-      ->type_name("FILE");
+  auto& outputs = prune->flags.outputs;
+  outputs.add(*verb, "-o,--output", prune->output, "pruned pose graph to write (- for stdout)",
+              {".g2o"});
+  outputs.add(*verb, "--verdicts", prune->verdicts, "decision and reason a loop, as CSV", {".csv"});
   verb->add_flag("--keep-ambiguous", prune->options.keep_ambiguous,
                  "leave loops that are not proven either way in the graph");
   verb->add_option("--trusted", prune->trusted,
                    "CSV of edges to trust in place of odometry (edge, or from,to)")
       ->type_name("FILE");
-  prune->explain.add_to(*verb);
+  prune->explain.add_to(*verb, outputs);
   verb->add_option("--ground-truth", prune->truth.path,
                    "true poses, for the trajectory error in the report")
       ->type_name("FILE");
@@ -194,7 +198,7 @@ Verb add_prune(CLI::App& root) {
       ->type_name("FILE");
   prune->method.add_to(*verb);
   add_common_flags(*verb, prune->flags);
-  return {verb, [prune] { return prune->run(); }};
+  return verb_of(verb, prune);
 }
 
 }  // namespace isotherm::apps

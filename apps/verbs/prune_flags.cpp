@@ -80,23 +80,25 @@ void PruneFlags::add_to(CLI::App& verb) {
 }
 
 void PruneFlags::add_fields_of(CLI::App& verb, const PruneOptions& method) {
-  const auto add = [&](std::string_view field, const auto& value, std::string_view help) {
+  const auto add = [&](std::string_view field, const auto& value, std::string_view help,
+                       const auto&... range) {
     std::string name(field);
     if (fields_.contains(name)) return;  // another method has it too
     const auto remember = [this, name](const auto& given) {
       given_.emplace_back(name, detail::field_to_json(given));
     };
-    fields_[name] = detail::add_field_flag(verb, field, value, help, remember)->group("");
+    fields_[name] = detail::add_field_flag(verb, field, value, remember, help, range...)->group("");
   };
   std::visit([&add](const auto& own) { visit_fields(own, add); }, method);
 }
 
 void PruneFlags::show_only(const PruneOptions& method) {
   for (const auto& [name, option] : fields_) option->group("");
-  const auto show = [&](std::string_view name, const auto& value, std::string_view help) {
+  const auto show = [&](std::string_view name, const auto& value, std::string_view help,
+                        const auto&... range) {
     CLI::Option* option = fields_.find(name)->second;
     option->group(fmt::format("Method {}", method_name(method)));
-    option->description(std::string(help));
+    option->description(detail::with_range(help, range...));
     constexpr bool kSwitch = std::same_as<std::remove_cvref_t<decltype(value)>, bool>;
     if constexpr (!kSwitch) option->default_str(detail::shown(value));
   };

@@ -1,8 +1,8 @@
-#include <fstream>
-#include <iostream>
 #include <memory>
 
 #include "isotherm/base/error.hpp"
+#include "json_file.hpp"
+#include "option_verb.hpp"
 #include "report/report_flags.hpp"
 #include "report/report_json.hpp"
 #include "verbs/verbs.hpp"
@@ -10,23 +10,8 @@
 namespace isotherm::apps {
 namespace {
 
-Json parse(const std::string& path, std::istream& stream) {
-  try {
-    return Json::parse(stream);
-  } catch (const nlohmann::json::parse_error& error) {
-    throw ParseError({path, 0, 0}, "", std::string("is not valid JSON: ") + error.what());
-  }
-}
-
 Json read_document(const std::string& path) {
-  Json document;
-  if (path == "-") {
-    document = parse(path, std::cin);
-  } else {
-    std::ifstream file(path);
-    if (!file) throw FileError(path, "cannot be opened");
-    document = parse(path, file);
-  }
+  auto document = read_json(path);
   if (!document.is_object() || document.value("schema", Json()) != kReportSchema) {
     throw ParseError({path, 0, 0}, "",
                      std::string("is not an ") + kReportSchema +
@@ -35,12 +20,12 @@ Json read_document(const std::string& path) {
   return document;
 }
 
-struct ReportVerb {
-  CommonFlags flags;
+struct ReportVerb : OptionVerb<NoOptions> {
   std::string input;
   std::string output;
 
-  int run() const {
+  int run() {
+    if (resolve_or_dump()) return kOk;
     write_report_document(output, read_document(input));
     return kOk;
   }
@@ -53,11 +38,11 @@ Verb add_report(CLI::App& root) {
   CLI::App* verb = root.add_subcommand("report", "write the page that explains a saved run");
   verb->add_option("input", report->input, "document that --report FILE.json saved (- for stdin)")
       ->required();
-  verb->add_option("-o,--output", report->output, "page to write (- for stdout)")
-      ->required()
-      ->type_name("FILE");
-  add_common_flags(*verb, report->flags);
-  return {verb, [report] { return report->run(); }};
+  report->flags.outputs
+      .add(*verb, "-o,--output", report->output, "page to write (- for stdout)", {".html", ".json"})
+      ->required();
+  report->add_flags(*verb);
+  return verb_of(verb, report);
 }
 
 }  // namespace isotherm::apps

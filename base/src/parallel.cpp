@@ -5,6 +5,7 @@
 #include <thread>
 
 #include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
@@ -17,8 +18,14 @@ namespace detail {
 namespace tbb = oneapi::tbb;
 using Range = tbb::blocked_range<std::int64_t>;
 
+// More threads than the machine runs at once would only make TBB complain.
+int usable(int threads) {
+  return threads > 0 ? std::min(threads, tbb::info::default_concurrency())
+                     : tbb::task_arena::automatic;
+}
+
 std::size_t slot_count(int threads) {
-  const tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  const tbb::task_arena arena(usable(threads));
   return static_cast<std::size_t>(arena.max_concurrency());
 }
 
@@ -48,7 +55,7 @@ void parallel_by_slot(std::int64_t count, std::size_t grain, int threads,
     const auto in_slot = [&run](const Range& range) {
       run(static_cast<std::size_t>(tbb::this_task_arena::current_thread_index()), range);
     };
-    tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+    tbb::task_arena arena(usable(threads));
     arena.execute(
         [&] { tbb::parallel_for(Range(0, count, grain), in_slot, tbb::simple_partitioner()); });
   }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "isotherm/base/error.hpp"
+#include "isotherm/base/output_path.hpp"
 #include "isotherm_test/temporary.hpp"
 
 namespace isotherm {
@@ -75,20 +76,6 @@ TEST(OutputFile, KeepsThePermissionsOfTheFileItReplaces) {
   file.write("new");
   file.commit();
   EXPECT_EQ(fs::status(folder / "a").permissions(), own);
-}
-
-TEST(RequireWritable, LooksAheadAndCreatesNothing) {
-  const TemporaryFolder folder;
-  write_file(folder / "file", "x");
-  require_writable("-");
-  require_writable("/dev/null");
-  require_writable(folder / "file");
-  require_writable(folder / "new");
-  EXPECT_THROW(require_writable(""), FileError);
-  EXPECT_THROW(require_writable(folder.path().string()), FileError);
-  EXPECT_THROW(require_writable(folder / "no/such/folder"), FileError);
-  EXPECT_THROW(require_writable(folder / "file/below"), FileError);
-  EXPECT_EQ(entries(folder), 1);
 }
 
 TEST(OutputFile, WritesDevicesDirectly) {

@@ -6,6 +6,7 @@
 #include "console.hpp"
 #include "isotherm/slam/evaluate/evaluate_loops.hpp"
 #include "isotherm/spectral/edges/verdict_file.hpp"
+#include "option_verb.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {
@@ -13,22 +14,26 @@ namespace {
 
 using namespace slam;
 
-struct EvalLoops {
-  CommonFlags flags;
+struct EvalLoops : OptionVerb<NoOptions> {
   std::string verdicts;
   std::string labels;
 
-  int run() const {
+  int run() {
+    if (resolve_or_dump()) return kOk;
     const auto metrics = evaluate_loops(spectral::read_verdicts(verdicts), read_labels(labels));
     if (flags.json != "-") {
-      fmt::print("precision {:.4f}  recall {:.4f}  F1 {:.4f}  AUC {:.4f}\n", metrics.precision(),
-                 metrics.recall(), metrics.f1(), metrics.auc);
-      fmt::print("pruned: {} incorrect, {} correct; left: {} incorrect, {} correct", metrics.tp,
-                 metrics.fp, metrics.fn, metrics.tn);
-      fmt::print(" ({} ambiguous); {} ignored\n", metrics.ambiguous, metrics.ignored);
+      write_text("-", to_text(metrics));
     }
     write_json(flags.json, to_json(metrics));
     return kOk;
+  }
+
+  static std::string to_text(const LoopMetrics& metrics) {
+    return fmt::format("precision {:.4f}  recall {:.4f}  F1 {:.4f}  AUC {:.4f}\n",
+                       metrics.precision(), metrics.recall(), metrics.f1(), metrics.auc) +
+           fmt::format("pruned: {} incorrect, {} correct; left: {} incorrect, {} correct",
+                       metrics.tp, metrics.fp, metrics.fn, metrics.tn) +
+           fmt::format(" ({} ambiguous); {} ignored\n", metrics.ambiguous, metrics.ignored);
   }
 
   static Json to_json(const LoopMetrics& metrics) {
@@ -53,8 +58,8 @@ Verb add_eval_loops(CLI::App& eval) {
   CLI::App* verb = eval.add_subcommand("loops", "precision and recall of verdicts");
   verb->add_option("verdicts", loops->verdicts, "verdicts written by prune")->required();
   verb->add_option("labels", loops->labels, "labels of the same edges")->required();
-  add_common_flags(*verb, loops->flags);
-  return {verb, [loops] { return loops->run(); }};
+  loops->add_flags(*verb);
+  return verb_of(verb, loops);
 }
 
 }  // namespace isotherm::apps

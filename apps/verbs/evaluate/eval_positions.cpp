@@ -9,22 +9,22 @@
 #include "console.hpp"
 #include "isotherm/geometry/points/point_alignment.hpp"
 #include "isotherm/network/io/position_file.hpp"
+#include "option_verb.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {
 namespace {
 
 using namespace network;
-using namespace network;
 
-struct EvalPositions {
-  CommonFlags flags;
+struct EvalPositions : OptionVerb<NoOptions> {
   std::string estimate;
   std::string truth;
   std::string leave_out;
   bool align = false;
 
-  int run() const {
+  int run() {
+    if (resolve_or_dump()) return kOk;
     auto [estimated, expected] = common_nodes();
     if (align) estimated = geometry::align_points(estimated, expected).apply(estimated);
     std::vector<double> errors;
@@ -36,8 +36,8 @@ struct EvalPositions {
     const double rmsd = std::sqrt((estimated - expected).squaredNorm() / count);
     const double median = errors[errors.size() / 2];
     if (flags.json != "-") {
-      fmt::print("RMSD {:.6g}  median {:.6g}  max {:.6g}  ({} nodes{})\n", rmsd, median,
-                 errors.back(), errors.size(), align ? ", aligned" : "");
+      write_text("-", fmt::format("RMSD {:.6g}  median {:.6g}  max {:.6g}  ({} nodes{})\n", rmsd,
+                                  median, errors.back(), errors.size(), align ? ", aligned" : ""));
     }
     write_json(flags.json, {{"schema", "isotherm.eval.positions/1"},
                             {"rmsd", rmsd},
@@ -84,8 +84,8 @@ Verb add_eval_positions(CLI::App& eval) {
                    "positions whose nodes do not count, such as the anchors")
       ->type_name("FILE");
   verb->add_flag("--align", positions->align, "first align by the best isometry");
-  add_common_flags(*verb, positions->flags);
-  return {verb, [positions] { return positions->run(); }};
+  positions->add_flags(*verb);
+  return verb_of(verb, positions);
 }
 
 }  // namespace isotherm::apps

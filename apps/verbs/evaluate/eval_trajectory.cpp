@@ -8,6 +8,7 @@
 #include "isotherm/slam/evaluate/trajectory_metrics.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm/slam/io/trajectory_file.hpp"
+#include "option_verb.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {
@@ -29,10 +30,11 @@ struct TrajectoryInput {
                     "time of each estimated pose in seconds, one a line: the truth is then "
                     "interpolated at these times")
         ->type_name("FILE");
-    verb.add_option("--max-gap", max_gap,
-                    "seconds to the nearest true pose beyond which there is none; 0: any with "
-                    "--timestamps, else 0.01")
-        ->capture_default_str();
+    add_number(verb, "--max-gap", max_gap,
+               "seconds to the nearest true pose beyond which there is none; 0: any with "
+               "--timestamps, else 0.01",
+               closed(0, 1e9))
+        ->default_str("0");
   }
 
   // Calls use(pairs) with poses of the right dimension.
@@ -91,19 +93,20 @@ std::string line_of(const ErrorStatistics& errors, const char* unit) {
                      errors.mean, errors.rmse, errors.median, errors.max, unit, errors.pairs);
 }
 
-struct EvalAte {
-  CommonFlags flags;
+struct EvalAte : OptionVerb<NoOptions> {
   TrajectoryInput input;
   std::string alignment = "se";
 
-  int run() const {
+  int run() {
+    if (resolve_or_dump()) return kOk;
     const auto align = enum_value<Alignment>("align", alignment);
     input.read(flags, [&](const auto& pairs) {
       const auto errors = absolute_trajectory_error(pairs, align);
       if (flags.json != "-") {
         // The heat-kernel paper's ATE is the mean after aligning the first pose.
         const char* note = align == Alignment::first ? "  (mean: the paper's ATE)" : "";
-        fmt::print("ATE, align {}: {}{}\n", alignment, line_of(errors, "m"), note);
+        write_text("-",
+                   fmt::format("ATE, align {}: {}{}\n", alignment, line_of(errors, "m"), note));
       }
       Json json = {{"schema", "isotherm.eval.ate/1"}, {"align", alignment}};
       json.update(to_json(errors));
@@ -113,19 +116,17 @@ struct EvalAte {
   }
 };
 
-struct EvalRpe {
-  CommonFlags flags;
+struct EvalRpe : OptionVerb<RelativeErrorOptions> {
   TrajectoryInput input;
-  RelativeErrorOptions options;
-  std::unique_ptr<FlaggedOptions<RelativeErrorOptions>> flagged;
 
-  int run() const {
-    flagged->resolve(read_config(flags));
+  int run() {
+    if (resolve_or_dump()) return kOk;
     input.read(flags, [&](const auto& pairs) {
       const auto errors = relative_pose_error(pairs, options);
       if (flags.json != "-") {
-        fmt::print("RPE over {} poses: {}\n", options.delta, line_of(errors.translation, "m"));
-        fmt::print("  rotation: {}\n", line_of(errors.rotation, "rad"));
+        write_text("-",
+                   fmt::format("RPE over {} poses: {}\n  rotation: {}\n", options.delta,
+                               line_of(errors.translation, "m"), line_of(errors.rotation, "rad")));
       }
       Json json = {{"schema", "isotherm.eval.rpe/1"}};
       json.update(options_to_json(options));
@@ -147,17 +148,16 @@ Verb add_eval_ate(CLI::App& eval) {
                    "first pose, least squares in SE(2) or SE(3), or none")
       ->check(CLI::IsMember({"first", "se", "none"}))
       ->capture_default_str();
-  add_common_flags(*verb, ate->flags);
-  return {verb, [ate] { return ate->run(); }};
+  ate->add_flags(*verb);
+  return verb_of(verb, ate);
 }
 
 Verb add_eval_rpe(CLI::App& eval) {
   auto rpe = std::make_shared<EvalRpe>();
   CLI::App* verb = eval.add_subcommand("rpe", "relative pose error");
   rpe->input.add_to(*verb);
-  rpe->flagged = std::make_unique<FlaggedOptions<RelativeErrorOptions>>(*verb, rpe->options);
-  add_common_flags(*verb, rpe->flags);
-  return {verb, [rpe] { return rpe->run(); }};
+  rpe->add_flags(*verb);
+  return verb_of(verb, rpe);
 }
 
 }  // namespace isotherm::apps

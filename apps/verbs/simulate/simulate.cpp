@@ -61,13 +61,13 @@ Verb add_world(CLI::App& simulate, const std::string& name, const std::string& d
   auto world = std::make_shared<SimulateWorld<Options, simulate_world>>();
   world->world = name;
   CLI::App* verb = simulate.add_subcommand(name, description);
-  verb->add_option("-o,--output", world->output, "pose graph to write (- for stdout)")
-      ->required()
-      ->type_name("FILE");
-  verb->add_option("--ground-truth", world->ground_truth, "true poses to write, as g2o")
-      ->type_name("FILE");
+  auto& outputs = world->flags.outputs;
+  outputs.add(*verb, "-o,--output", world->output, "pose graph to write (- for stdout)", {".g2o"})
+      ->required();
+  outputs.add(*verb, "--ground-truth", world->ground_truth, "true poses to write, as g2o",
+              {".g2o"});
   world->add_flags(*verb);
-  return {verb, [world] { return world->run(); }};
+  return verb_of(verb, world);
 }
 
 }  // namespace

@@ -89,17 +89,16 @@ struct SimulateNetwork : OptionVerb<NetworkOptions> {
 Verb add_simulate_network(CLI::App& simulate) {
   auto network = std::make_shared<SimulateNetwork>();
   CLI::App* verb = simulate.add_subcommand("network", "sensors and the distances between them");
-  verb->add_option("-o,--output", network->output, "ranges to write, as CSV (- for stdout)")
-      ->required()
-      ->type_name("FILE");
-  verb->add_option("--anchor-file", network->anchors, "known positions to write, as CSV")
-      ->type_name("FILE");
-  verb->add_option("--ground-truth", network->ground_truth, "all true positions to write, as CSV")
-      ->type_name("FILE");
-  verb->add_option("--labels", network->labels, "which ranges are wrong, as CSV")
-      ->type_name("FILE");
+  auto& outputs = network->flags.outputs;
+  const auto add = [&](const char* flag, std::string& path, const char* help) {
+    return outputs.add(*verb, flag, path, help, {".csv"});
+  };
+  add("-o,--output", network->output, "ranges to write, as CSV (- for stdout)")->required();
+  add("--anchor-file", network->anchors, "known positions to write, as CSV");
+  add("--ground-truth", network->ground_truth, "all true positions to write, as CSV");
+  add("--labels", network->labels, "which ranges are wrong, as CSV");
   network->add_flags(*verb);
-  return {verb, [network] { return network->run(); }};
+  return verb_of(verb, network);
 }
 
 }  // namespace isotherm::apps

@@ -146,14 +146,8 @@ double resolve_interval(double polyline_length, std::size_t points, double asked
 }  // namespace
 
 void LapLineOptions::validate() const {
-  if (!(std::isfinite(interval) && interval >= 0.0)) {
-    throw InvalidArgument("interval", "must be finite and not negative");
-  }
-  if (window < 2 || window % 2 != 0) throw InvalidArgument("window", "must be even and positive");
-  // The small excess admits pi / 2 as anyone rounds it.
-  if (!(max_turn > 0.0 && max_turn <= std::numbers::pi / 2.0 + kRounding)) {
-    throw InvalidArgument("max_turn", "must be in (0, pi/2]");
-  }
+  require_fields_in_range(*this);
+  if (window % 2 != 0) throw InvalidArgument("window", "must be even");
 }
 
 template <int Dim>

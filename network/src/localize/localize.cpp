@@ -306,15 +306,8 @@ LocalizeResult localize_merged(const RangeNetwork& network, const LocalizeOption
 }  // namespace
 
 void LocalizeOptions::validate() const {
-  const auto require = [](bool good, const char* field, const char* expected) {
-    if (!good) throw InvalidArgument(field, expected);
-  };
-  require(significance > 0.0 && significance < 1.0, "significance", "must be in (0, 1)");
-  require(mirror_chance > 0.0 && mirror_chance < 1.0, "mirror_chance", "must be in (0, 1)");
-  require(heat_chance > 0.0 && heat_chance < 1.0, "heat_chance", "must be in (0, 1)");
-  require(patch_size >= 5, "patch_size", "must be >= 5");
-  require(max_iterations >= 1, "max_iterations", "must be >= 1");
-  require(threads >= 0, "threads", "must be >= 0");
+  require_fields_in_range(*this);
+  if (threads < 0) throw InvalidArgument("threads", "must not be negative");
 }
 
 std::int64_t LocalizeResult::count(NodeStatus wanted) const {

@@ -141,17 +141,8 @@ class Simulator {
 }  // namespace
 
 void NetworkOptions::validate() const {
-  const auto within = [](double value, double low, double high) {
-    return value >= low && value <= high;
-  };
-  require(nodes >= 2 && nodes <= 10'000'000, "nodes", "must be in [2, 10000000]");
-  require(dimension == 2 || dimension == 3, "dimension", "must be 2 or 3");
-  require(anchors >= 0 && anchors <= nodes, "anchors", "must be in [0, nodes]");
-  require(std::isfinite(degree) && degree > 0.0, "degree", "must be finite and positive");
-  require(within(radius, 0.0, 2.0), "radius", "must be in [0, 2]");
-  require(within(noise, 0.0, 0.3), "noise", "must be in [0, 0.3]");
-  require(within(false_fraction, 0.0, 0.9), "false_fraction", "must be in [0, 0.9]");
-  require(within(biased_fraction, 0.0, 0.9), "biased_fraction", "must be in [0, 0.9]");
+  require_fields_in_range(*this);
+  require(anchors <= nodes, "anchors", "must be at most the number of nodes");
   require(false_fraction + biased_fraction <= 1.0, "biased_fraction",
           "must leave room for the false ranges");
 }

@@ -20,13 +20,7 @@ Label judge(double translation_error, double rotation_error, const LabelOptions&
 
 }  // namespace
 
-void LabelOptions::validate() const {
-  if (!(max_translation_error > 0.0)) {
-    throw InvalidArgument("max_translation_error", "must be positive");
-  }
-  if (!(max_rotation_error > 0.0)) throw InvalidArgument("max_rotation_error", "must be positive");
-  if (!(ignore_band >= 0.0)) throw InvalidArgument("ignore_band", "must not be negative");
-}
+void LabelOptions::validate() const { require_fields_in_range(*this); }
 
 template <class Pose>
 std::vector<EdgeLabel> label_candidates(const PoseGraph<Pose>& graph, const EdgeRoles& roles,

@@ -154,9 +154,7 @@ ErrorStatistics absolute_trajectory_error(const PosePairs<Pose>& pairs, Alignmen
   return summarize(std::move(errors));
 }
 
-void RelativeErrorOptions::validate() const {
-  if (delta < 1) throw InvalidArgument("delta", "must be at least 1");
-}
+void RelativeErrorOptions::validate() const { require_fields_in_range(*this); }
 
 template <class Pose>
 RelativeError relative_pose_error(const PosePairs<Pose>& pairs,

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "isotherm/base/error.hpp"
-#include "isotherm/base/require.hpp"
 #include "optimize/minimize.hpp"
 #include "optimize/robust_minimize.hpp"
 
@@ -87,13 +86,7 @@ MinimizeSummary minimize_by_kernel(NormalEquations<Pose>& equations,
 
 }  // namespace
 
-void OptimizeOptions::validate() const {
-  if (!(kernel_width >= 0.0) || !std::isfinite(kernel_width)) {
-    throw InvalidArgument("kernel_width", "must be a positive number, or 0 for the default");
-  }
-  require_positive("cost_tolerance", cost_tolerance);
-  if (max_iterations < 0) throw InvalidArgument("max_iterations", "must not be negative");
-}
+void OptimizeOptions::validate() const { require_fields_in_range(*this); }
 
 template <class Pose>
 OptimizeResult<Pose> optimize(const PoseGraph<Pose>& graph, const OptimizeOptions& options,

@@ -222,15 +222,11 @@ void check_input(const PoseGraph<Pose>& graph, const std::vector<Pose>& truth,
 }  // namespace
 
 void CorruptOptions::validate() const {
+  require_fields_in_range(*this);
   const int amounts = (count >= 0) + (ratio >= 0.0) + (fraction >= 0.0);
   if (amounts != 1) {
     throw InvalidArgument("count", "give exactly one of count, ratio and fraction");
   }
-  if (std::isnan(ratio) || ratio > 1e6) throw InvalidArgument("ratio", "must be in [0, 10^6]");
-  if (std::isnan(fraction) || fraction > 0.999) {
-    throw InvalidArgument("fraction", "must be in [0, 0.999]");
-  }
-  if (group_size < 0) throw InvalidArgument("group_size", "must not be negative");
 }
 
 template <class Pose>

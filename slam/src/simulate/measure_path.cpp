@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "isotherm/base/require.hpp"
 #include "isotherm/slam/graph/odometry.hpp"
 #include "simulate/loop_pairs.hpp"
 
@@ -88,21 +87,7 @@ std::vector<Eigen::Vector3d> places(const std::vector<Pose>& path) {
 
 }  // namespace
 
-void MeasurementOptions::validate() const {
-  if (loops < -1) throw InvalidArgument("loops", "must be -1 or more");
-  require_positive("odometry_sigma", odometry_sigma);
-  require_positive("odometry_turn_sigma", odometry_turn_sigma);
-  require_positive("loop_sigma", loop_sigma);
-  require_positive("loop_turn_sigma", loop_turn_sigma);
-  require_positive("loop_radius", loop_radius);
-  if (!(std::isfinite(drift) && drift >= 0.0)) {
-    throw InvalidArgument("drift", "must be finite and not negative");
-  }
-}
-
-void require_path_length(std::int64_t poses) {
-  if (poses < 1 || poses > 100'000'000) throw InvalidArgument("poses", "must be in [1, 10^8]");
-}
+void MeasurementOptions::validate() const { require_fields_in_range(*this); }
 
 template <class Pose>
 Simulation<Pose> measure_path(std::vector<Pose> path, const MeasurementOptions& options,

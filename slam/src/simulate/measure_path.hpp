@@ -14,7 +14,4 @@ template <class Pose>
 Simulation<Pose> measure_path(std::vector<Pose> path, const MeasurementOptions& options,
                               Random& random);
 
-/// @throws InvalidArgument unless `poses` is in [1, 10^8]
-void require_path_length(std::int64_t poses);
-
 }  // namespace isotherm::slam

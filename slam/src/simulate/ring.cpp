@@ -6,11 +6,7 @@
 
 namespace isotherm::slam {
 
-void RingOptions::validate() const {
-  require_path_length(poses);
-  if (laps < 1) throw InvalidArgument("laps", "must be at least 1");
-  measurements.validate();
-}
+void RingOptions::validate() const { require_fields_in_range(*this); }
 
 Simulation<Pose2> simulate_ring(const RingOptions& options) {
   options.validate();

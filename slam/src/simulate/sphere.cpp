@@ -39,11 +39,7 @@ Spiral spiral(const SphereOptions& options) {
 
 }  // namespace
 
-void SphereOptions::validate() const {
-  require_path_length(poses);
-  if (laps < 0) throw InvalidArgument("laps", "must not be negative");
-  measurements.validate();
-}
+void SphereOptions::validate() const { require_fields_in_range(*this); }
 
 Simulation<Pose3> simulate_sphere(const SphereOptions& options) {
   options.validate();

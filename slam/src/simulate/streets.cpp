@@ -15,10 +15,6 @@ std::int64_t half_width(double side, std::int64_t block) {
   return block * std::max<std::int64_t>(1, blocks);
 }
 
-void require_block(std::int64_t block) {
-  if (block < 1 || block > 1'000'000) throw InvalidArgument("block", "must be in [1, 10^6]");
-}
-
 Pose2 planar(const LatticeStop& stop) {
   const Eigen::Vector3d heading = stop.frame.col(0).cast<double>();
   return {stop.cell.head<2>().cast<double>(), std::atan2(heading.y(), heading.x())};
@@ -31,17 +27,9 @@ Pose3 spatial(const LatticeStop& stop) {
 
 }  // namespace
 
-void CityOptions::validate() const {
-  require_path_length(poses);
-  require_block(block);
-  measurements.validate();
-}
+void CityOptions::validate() const { require_fields_in_range(*this); }
 
-void Grid3dOptions::validate() const {
-  require_path_length(poses);
-  require_block(block);
-  measurements.validate();
-}
+void Grid3dOptions::validate() const { require_fields_in_range(*this); }
 
 // Both cities are as large as makes their streets about twice as long as the path,
 // so that places are met again without the walk staying in one corner: a square of

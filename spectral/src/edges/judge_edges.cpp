@@ -220,15 +220,7 @@ JudgeEdgesResult judge_by_rank(const WeightedGraph& graph, const JudgeEdgesOptio
 
 }  // namespace
 
-void JudgeEdgesOptions::validate() const {
-  if (rounds < 1 || rounds > 10) throw InvalidArgument("rounds", "must be in [1, 10]");
-  if (!(chance > 0.0 && chance < 1.0)) throw InvalidArgument("chance", "must be in (0, 1)");
-  if (!(std::isfinite(scale) && scale > 0.0)) {
-    throw InvalidArgument("scale", "must be finite and positive");
-  }
-  if (!std::isfinite(konst)) throw InvalidArgument("konst", "must be finite");
-  if (!(tolerance > 0.0)) throw InvalidArgument("tolerance", "must be positive");
-}
+void JudgeEdgesOptions::validate() const { require_fields_in_range(*this); }
 
 double jaccard_index(const WeightedGraph& graph, Index edge) {
   const auto [from, to, weight] = graph.edge(edge);

@@ -163,9 +163,7 @@ Threshold middle_of_split(std::span<const double> sorted, std::size_t split, boo
 
 }  // namespace
 
-void ThresholdOptions::validate() const {
-  if (!std::isfinite(konst)) throw InvalidArgument("konst", "must be finite");
-}
+void ThresholdOptions::validate() const { require_fields_in_range(*this); }
 
 Threshold find_threshold(std::span<const double> distances, const ThresholdOptions& options) {
   options.validate();

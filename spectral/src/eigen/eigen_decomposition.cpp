@@ -190,12 +190,7 @@ EigenMethod choose(const EigenOptions& options, const Laplacian& laplacian, Inde
 
 }  // namespace
 
-void EigenOptions::validate() const {
-  if (count < 1) throw InvalidArgument("count", "must be at least 1");
-  if (dense_limit < 0) throw InvalidArgument("dense_limit", "must not be negative");
-  if (!(tolerance > 0.0)) throw InvalidArgument("tolerance", "must be positive");
-  if (max_restarts < 1) throw InvalidArgument("max_restarts", "must be at least 1");
-}
+void EigenOptions::validate() const { require_fields_in_range(*this); }
 
 EigenDecomposition smallest_eigenpairs(const Laplacian& laplacian, const EigenOptions& options) {
   options.validate();

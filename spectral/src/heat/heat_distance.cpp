@@ -34,8 +34,7 @@ void summarise(HeatDistanceResult& result, double tolerance) {
 }  // namespace
 
 void HeatDistanceOptions::validate() const {
-  if (!(tolerance > 0.0)) throw InvalidArgument("tolerance", "must be positive");
-  if (max_steps < 1) throw InvalidArgument("max_steps", "must be at least 1");
+  require_fields_in_range(*this);
   if (threads < 0) throw InvalidArgument("threads", "must not be negative");
   if (method == HeatMethod::exact) throw InvalidArgument("method", "is not a method to choose");
 }

@@ -39,7 +39,8 @@ class OutputFile {
   /// @throws FileError if the disk is full, say.
   void write(std::string_view text);
 
-  /// Writes what is pending and gives the file its name.
+  /// Writes what is pending and gives the file its name, or leaves that to the OutputGroup
+  /// that lives on this thread.
   /// @throws FileError if that fails; the target is then untouched.
   void commit();
 
@@ -47,13 +48,5 @@ class OutputFile {
   struct State;
   std::unique_ptr<State> state_;
 };
-
-/// The file that writing to `path` makes or replaces: links followed, no "." or "..", so
-/// that two names of one file are the same. "-" is itself.
-std::string output_target(const std::string& path);
-
-/// For a look ahead, before hours of work: nothing is created.
-/// @throws FileError if OutputFile could not write to `path` as things stand.
-void require_writable(const std::string& path);
 
 }  // namespace isotherm

@@ -8,11 +8,7 @@
 
 namespace isotherm::slam {
 
-void Chi2PruneOptions::validate() const {
-  if (!(significance > 0.0 && significance < 1.0)) {
-    throw InvalidArgument("significance", "must be in (0, 1)");
-  }
-}
+void Chi2PruneOptions::validate() const { require_fields_in_range(*this); }
 
 namespace detail {
 

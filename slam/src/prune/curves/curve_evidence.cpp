@@ -8,11 +8,15 @@
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/parallel.hpp"
 #include "isotherm/base/statistics.hpp"
+#include "isotherm/base/text_writer.hpp"
 #include "isotherm/geometry/curves/curve_stretch.hpp"
 #include "isotherm/slam/graph/odometry.hpp"
 
 namespace isotherm::slam {
 namespace {
+
+// A comparison takes the square of this.
+constexpr double kMostSteps = 1000.0;
 
 // The odometry path of every chain, and where each vertex is on it.
 template <class Pose>
@@ -268,21 +272,15 @@ std::vector<CurveEvidence> compare_in_common_frame(const PoseGraph<Pose>& graph,
 }  // namespace
 
 void CurveEvidenceOptions::validate() const {
+  require_fields_in_range(*this);
   lap_line.validate();
-  if (windows.empty()) throw InvalidArgument("curve_windows", "must not be empty");
   for (const double window : windows) {
-    if (!(std::isfinite(window) && window > 0.0)) {
-      throw InvalidArgument("curve_windows", "must be finite and positive");
-    }
-    if (!(step > 0.0 && step <= window)) {
-      throw InvalidArgument("curve_step", "must be positive and at most every window");
+    if (step > window) throw InvalidArgument("curve_step", "must be at most every window");
+    if (window / step > kMostSteps) {
+      throw InvalidArgument("curve_step",
+                            "must divide no window into more than " + format_number(kMostSteps));
     }
   }
-  if (!(std::isfinite(cap) && cap > 0.0)) {
-    throw InvalidArgument("curve_cap", "must be finite and positive");
-  }
-  if (places < 1) throw InvalidArgument("curve_places", "must be positive");
-  if (!(chance > 0.0 && chance < 1.0)) throw InvalidArgument("curve_chance", "must be in (0, 1)");
 }
 
 template <class Pose>

@@ -7,9 +7,7 @@
 namespace isotherm::slam {
 
 void CurvePruneOptions::validate() const {
-  if (!(curve_threshold >= 0.0 && curve_threshold <= 1.0)) {
-    throw InvalidArgument("curve_threshold", "must be in [0, 1]");
-  }
+  require_fields_in_range(*this);
   curve.validate();
 }
 

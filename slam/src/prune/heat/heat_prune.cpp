@@ -144,25 +144,13 @@ class Pruner {
 }  // namespace
 
 void HeatPruneOptions::validate() const {
-  if (scales.empty()) throw InvalidArgument("scales", "must not be empty");
-  for (std::size_t k = 0; k < scales.size(); ++k) {
-    if (!(std::isfinite(scales[k]) && scales[k] > 0.0)) {
-      throw InvalidArgument("scales", "must be finite and positive");
-    }
-    if (k > 0 && scales[k] >= scales[k - 1]) {
-      throw InvalidArgument("scales", "must be descending");
-    }
+  require_fields_in_range(*this);
+  for (std::size_t k = 1; k < scales.size(); ++k) {
+    if (scales[k] >= scales[k - 1]) throw InvalidArgument("scales", "must be descending");
   }
   if (konst.size() != 1 && konst.size() != scales.size()) {
     throw InvalidArgument("konst", "must have one entry, or one per scale");
   }
-  for (const double value : konst) {
-    if (!std::isfinite(value)) throw InvalidArgument("konst", "must be finite");
-  }
-  if (!(min_separation >= 0.0 && min_separation <= 1.0)) {
-    throw InvalidArgument("min_separation", "must be in [0, 1]");
-  }
-  if (!(tolerance > 0.0)) throw InvalidArgument("tolerance", "must be positive");
   induction.validate();
 }
 

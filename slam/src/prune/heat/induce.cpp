@@ -1,6 +1,6 @@
 #include "isotherm/slam/prune/induce.hpp"
 
-#include "isotherm/base/require.hpp"
+#include "isotherm/base/range.hpp"
 #include "isotherm/slam/prune/odometry_chi2.hpp"
 
 namespace isotherm::slam {
@@ -27,8 +27,7 @@ std::vector<double> candidate_weights(const PoseGraph<Pose>& graph, const EdgeRo
 }  // namespace
 
 void InductionOptions::validate() const {
-  require_positive("odometry_weight", odometry_weight);
-  require_positive("loop_weight", loop_weight);
+  require_fields_in_range(*this);
   curve.validate();
 }
 

@@ -29,9 +29,7 @@ std::string_view GncOptions::title() {
 
 template <RobustKernel kernel>
 void KernelPruneOptions<kernel>::validate() const {
-  if (!(kernel_width >= 0.0) || !std::isfinite(kernel_width)) {
-    throw InvalidArgument("kernel_width", "must be a positive number, or 0 for the default");
-  }
+  require_fields_in_range(*this);
 }
 
 template struct KernelPruneOptions<RobustKernel::sc>;

@@ -99,15 +99,7 @@ Loop<Pose> oriented(const Constraint<Pose>& constraint) {
 
 }  // namespace
 
-void PcmOptions::validate() const {
-  if (!(pcm_odometry_confidence > 0.0 && pcm_odometry_confidence <= 1.0)) {
-    throw InvalidArgument("pcm_odometry_confidence", "must be in (0, 1]");
-  }
-  if (!(pcm_pair_confidence > 0.0 && pcm_pair_confidence < 1.0)) {
-    throw InvalidArgument("pcm_pair_confidence", "must be in (0, 1)");
-  }
-  if (pcm_clique_budget < 0) throw InvalidArgument("pcm_clique_budget", "must not be negative");
-}
+void PcmOptions::validate() const { require_fields_in_range(*this); }
 
 template <class Pose>
 PcmResult pcm(const PoseGraph<Pose>& given, const EdgeRoles& roles, const PcmOptions& options,

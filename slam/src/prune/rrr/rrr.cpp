@@ -345,13 +345,7 @@ class Rrr {
 
 }  // namespace
 
-void RrrOptions::validate() const {
-  if (rrr_cluster_gap < 1) throw InvalidArgument("rrr_cluster_gap", "must be at least 1");
-  if (!(rrr_confidence > 0.0 && rrr_confidence < 1.0)) {
-    throw InvalidArgument("rrr_confidence", "must be in (0, 1)");
-  }
-  if (rrr_iterations < 1) throw InvalidArgument("rrr_iterations", "must be at least 1");
-}
+void RrrOptions::validate() const { require_fields_in_range(*this); }
 
 template <class Pose>
 EdgeVerdicts rrr(const PoseGraph<Pose>& graph, const EdgeRoles& roles, const RrrOptions& options,

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "isotherm/base/progress.hpp"
+#include "isotherm/base/range.hpp"
 #include "isotherm/geometry/curves/polyline.hpp"
 
 namespace isotherm::geometry {
@@ -33,9 +34,10 @@ template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, LapLineOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("interval", options.interval,
-        "lap-line: metres between samples; 0: mean length of odometry edges");
-  visit("window", options.window, "lap-line: arc length described, in intervals");
-  visit("max_turn", options.max_turn, "lap-line: radians the path may turn in the window");
+        "lap-line: metres between samples; 0: mean length of odometry edges", closed(0, 1e6));
+  visit("window", options.window, "lap-line: arc length described, in intervals", closed(2, 10000));
+  visit("max_turn", options.max_turn, "lap-line: radians the path may turn in the window",
+        left_open(0, 1.5708));
 }
 
 /// Signed perpendicular offsets of a curve from a straight line through one of

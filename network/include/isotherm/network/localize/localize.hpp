@@ -10,6 +10,7 @@
 
 #include "isotherm/base/options.hpp"
 #include "isotherm/base/progress.hpp"
+#include "isotherm/base/range.hpp"
 #include "isotherm/network/range_network.hpp"
 #include "isotherm/spectral/edges/edge_verdicts.hpp"
 
@@ -81,15 +82,19 @@ template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, LocalizeOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("method", options.method, "leave false ranges out, or fit them all");
-  visit("significance", options.significance, "probability of calling a correct range false");
-  visit("mirror_chance", options.mirror_chance, "likelihood of a node's second-best place");
+  visit("significance", options.significance, "probability of calling a correct range false",
+        open(0, 1));
+  visit("mirror_chance", options.mirror_chance, "likelihood of a node's second-best place",
+        open(0, 1));
   visit("heat_pruning", options.heat_pruning,
         "let the heat kernel choose the ranges to start from");
-  visit("heat_chance", options.heat_chance, "start without ranges less likely true than this");
+  visit("heat_chance", options.heat_chance, "start without ranges less likely true than this",
+        open(0, 1));
   visit("merge_repeats", options.merge_repeats, "take the median of ranges between two nodes");
   visit("estimate_noise", options.estimate_noise, "scale standard deviations by the residuals");
-  visit("patch_size", options.patch_size, "most nodes of a local map");
-  visit("max_iterations", options.max_iterations, "most iterations of a refinement");
+  visit("patch_size", options.patch_size, "most nodes of a local map", closed(5, 1000));
+  visit("max_iterations", options.max_iterations, "most iterations of a refinement",
+        closed(1, 1e6));
 }
 
 enum class LocalizeStatus {

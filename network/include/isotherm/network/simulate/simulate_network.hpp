@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "isotherm/base/range.hpp"
 #include "isotherm/network/range_network.hpp"
 
 namespace isotherm::network {
@@ -33,14 +34,17 @@ struct NetworkOptions {
 template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, NetworkOptions>
 void visit_fields(Options& options, Visitor&& visit) {
-  visit("nodes", options.nodes, "number of nodes, anchors included");
-  visit("dimension", options.dimension, "2 (unit square) or 3 (unit cube)");
-  visit("anchors", options.anchors, "number of nodes with a known position");
-  visit("degree", options.degree, "neighbours of a node away from the border");
-  visit("radius", options.radius, "longest distance measured; 0: from the degree");
-  visit("noise", options.noise, "standard deviation of a range, as a part of the distance");
-  visit("false_fraction", options.false_fraction, "part of the ranges that join any two nodes");
-  visit("biased_fraction", options.biased_fraction, "part of the ranges that are too long");
+  visit("nodes", options.nodes, "number of nodes, anchors included", closed(2, 1e7));
+  visit("dimension", options.dimension, "2 (unit square) or 3 (unit cube)", closed(2, 3));
+  visit("anchors", options.anchors, "number of nodes with a known position", closed(0, 1e7));
+  visit("degree", options.degree, "neighbours of a node away from the border", left_open(0, 1e6));
+  visit("radius", options.radius, "longest distance measured; 0: from the degree", closed(0, 2));
+  visit("noise", options.noise, "standard deviation of a range, as a part of the distance",
+        closed(0, 0.3));
+  visit("false_fraction", options.false_fraction, "part of the ranges that join any two nodes",
+        closed(0, 0.9));
+  visit("biased_fraction", options.biased_fraction, "part of the ranges that are too long",
+        closed(0, 0.9));
 }
 
 /// What a simulated range is.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "isotherm/base/options.hpp"
+#include "isotherm/base/range.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 
 namespace isotherm::slam {
@@ -47,11 +48,11 @@ template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, LabelOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("max_translation_error", options.max_translation_error,
-        "metres by which a correct loop may miss the ground truth");
+        "metres by which a correct loop may miss the ground truth", left_open(0, 1e9));
   visit("max_rotation_error", options.max_rotation_error,
-        "radians by which a correct loop may miss the ground truth");
+        "radians by which a correct loop may miss the ground truth", left_open(0, 1e9));
   visit("ignore_band", options.ignore_band,
-        "metres either side of max-translation-error that are too close to call");
+        "metres either side of max-translation-error that are too close to call", closed(0, 1e9));
 }
 
 /// Labels every candidate by the ground truth of its ends: incorrect iff the

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "isotherm/base/options.hpp"
+#include "isotherm/base/range.hpp"
 #include "isotherm/slam/graph/trajectory.hpp"
 
 namespace isotherm::slam {
@@ -83,7 +84,7 @@ struct RelativeErrorOptions {
 template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, RelativeErrorOptions>
 void visit_fields(Options& options, Visitor&& visit) {
-  visit("delta", options.delta, "poses between the two ends of a pair (rpe)");
+  visit("delta", options.delta, "poses between the two ends of a pair (rpe)", closed(1, 1e9));
   visit("all_pairs", options.all_pairs, "overlapping pairs instead of consecutive ones (rpe)");
 }
 

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "isotherm/base/options.hpp"
+#include "isotherm/base/range.hpp"
 #include "isotherm/base/run_context.hpp"
 #include "isotherm/slam/graph/any_pose_graph.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
@@ -54,12 +55,14 @@ requires std::same_as<std::remove_const_t<Options>, OptimizeOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("kernel", options.kernel, "robust kernel on loop closures");
   visit("kernel_width", options.kernel_width,
-        "in sqrt(chi2) for huber and cauchy, else in chi2; 0: the kernel's own default");
+        "in sqrt(chi2) for huber and cauchy, else in chi2; 0: the kernel's own default",
+        closed(0, 1e12));
   visit("kernel_on_odometry", options.kernel_on_odometry, "apply the kernel to odometry too");
   visit("initialization", options.initialization, "where to start");
   visit("algorithm", options.algorithm, "how steps are chosen");
-  visit("max_iterations", options.max_iterations, "give up after this many steps");
-  visit("cost_tolerance", options.cost_tolerance, "fraction of the cost left to gain that ends it");
+  visit("max_iterations", options.max_iterations, "give up after this many steps", closed(0, 1e6));
+  visit("cost_tolerance", options.cost_tolerance, "fraction of the cost left to gain that ends it",
+        left_open(0, 1));
 }
 
 enum class OptimizeStatus {

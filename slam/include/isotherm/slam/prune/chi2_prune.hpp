@@ -4,6 +4,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "isotherm/base/range.hpp"
 #include "isotherm/base/run_context.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 
@@ -27,8 +28,8 @@ struct Chi2PruneOptions {
 template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, Chi2PruneOptions>
 void visit_fields(Options& options, Visitor&& visit) {
-  visit("significance", options.significance,
-        "probability with which a correct loop may be pruned");
+  visit("significance", options.significance, "probability with which a correct loop may be pruned",
+        open(0, 1));
 }
 
 namespace detail {

@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "isotherm/base/range.hpp"
 #include "isotherm/base/run_context.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm/spectral/edges/edge_verdicts.hpp"
@@ -40,12 +41,12 @@ struct ConsensusOptions {
 template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, ConsensusOptions>
 void visit_fields(Options& options, Visitor&& visit) {
-  visit("significance", options.significance,
-        "probability with which a correct loop may be pruned");
+  visit("significance", options.significance, "probability with which a correct loop may be pruned",
+        open(0, 0.5));
   visit("window", options.window,
-        "vertices within which the ends of loops that confirm each other lie");
+        "vertices within which the ends of loops that confirm each other lie", closed(1, 1e6));
   visit("calibrate", options.calibrate, "estimate the scale of the covariances from the data");
-  visit("max_rounds", options.max_rounds, "batches accepted at most");
+  visit("max_rounds", options.max_rounds, "batches accepted at most", closed(1, 1e6));
 }
 
 /// Why one candidate was decided as it was.

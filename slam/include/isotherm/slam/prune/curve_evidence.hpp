@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "isotherm/base/options.hpp"
+#include "isotherm/base/range.hpp"
 #include "isotherm/base/run_context.hpp"
 #include "isotherm/geometry/curves/lap_line.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
@@ -75,21 +76,26 @@ requires std::same_as<std::remove_const_t<Options>, CurveEvidenceOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("curve", options.comparison, "how the paths at a loop's ends are compared");
   visit("lap_interval", options.lap_line.interval,
-        "curve lap-line: metres between samples; 0: mean odometry step");
-  visit("lap_window", options.lap_line.window, "curve lap-line: length described, in intervals");
+        "curve lap-line: metres between samples; 0: mean odometry step", closed(0, 1e6));
+  visit("lap_window", options.lap_line.window, "curve lap-line: length described, in intervals",
+        closed(2, 10000));
   visit("lap_max_turn", options.lap_line.max_turn,
-        "curve lap-line: radians a described path may turn");
+        "curve lap-line: radians a described path may turn", left_open(0, 1.5708));
   visit("curve_windows", options.windows,
-        "curve common-frame: metres of path to either side; several are averaged");
-  visit("curve_step", options.step, "curve common-frame: metres between points of a path");
-  visit("curve_cap", options.cap, "curve common-frame: metres beyond which paths just differ");
+        "curve common-frame: metres of path to either side; several are averaged",
+        closed(1e-6, 1e6));
+  visit("curve_step", options.step, "curve common-frame: metres between points of a path",
+        closed(1e-6, 1e6));
+  visit("curve_cap", options.cap, "curve common-frame: metres beyond which paths just differ",
+        left_open(0, 1e9));
   visit("curve_shared_path", options.shared_path,
         "curve common-frame: what must fit where windows overlap on one path");
   visit("curve_rarity", options.rarity,
         "curve common-frame: judge a match by how few other places match as well");
-  visit("curve_places", options.places, "curve common-frame: places compared for rarity");
+  visit("curve_places", options.places, "curve common-frame: places compared for rarity",
+        closed(1, 100000));
   visit("curve_chance", options.chance,
-        "curve common-frame: share of places at which a match counts half");
+        "curve common-frame: share of places at which a match counts half", open(0, 1));
 }
 
 /// What the paths say about one loop.

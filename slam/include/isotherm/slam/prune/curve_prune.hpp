@@ -4,6 +4,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "isotherm/base/range.hpp"
 #include "isotherm/base/run_context.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm/slam/prune/curve_evidence.hpp"
@@ -30,7 +31,7 @@ template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, CurvePruneOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("curve_threshold", options.curve_threshold,
-        "score of the paths above which a loop is pruned");
+        "score of the paths above which a loop is pruned", closed(0, 1));
   visit_fields(options.curve, visit);
 }
 

@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "isotherm/base/range.hpp"
 #include "isotherm/base/run_context.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm/spectral/edges/edge_verdicts.hpp"
@@ -40,10 +41,11 @@ template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, EvidenceOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("significance", options.significance,
-        "probability of being true below which a loop is pruned");
-  visit("window", options.window, "vertices within which the ends of loops of one run lie");
+        "probability of being true below which a loop is pruned", open(0, 0.5));
+  visit("window", options.window, "vertices within which the ends of loops of one run lie",
+        closed(1, 1e6));
   visit("calibrate", options.calibrate, "estimate the scale of the covariances from the data");
-  visit("max_rounds", options.max_rounds, "moves at given scales at most");
+  visit("max_rounds", options.max_rounds, "moves at given scales at most", closed(1, 1e6));
 }
 
 /// What is known of one candidate, given the verdicts on all others.

@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "isotherm/base/range.hpp"
 #include "isotherm/base/run_context.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm/slam/prune/induce.hpp"
@@ -50,16 +51,14 @@ struct HeatPruneOptions {
 template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, HeatPruneOptions>
 void visit_fields(Options& options, Visitor&& visit) {
-  visit("scales", options.scales, "diffusion times, descending");
+  visit("scales", options.scales, "diffusion times, descending", left_open(0, 1e12));
   visit("threshold", options.threshold, "rule that splits the distances of a scale");
-  visit("konst", options.konst, "deviations above the mean, for mean-sigma; one or one a scale");
+  visit("konst", options.konst, "deviations above the mean, for mean-sigma; one or one a scale",
+        closed(-1e6, 1e6));
   visit("min_separation", options.min_separation,
-        "share of variance an adaptive split must explain");
-  visit("init", options.induction.weights, "weights of the loops");
-  visit("odometry_weight", options.induction.odometry_weight, "weight of odometry");
-  visit("loop_weight", options.induction.loop_weight, "largest weight of a loop");
-  visit("tolerance", options.tolerance, "error allowed in a heat distance");
-  visit_fields(options.induction.curve, visit);
+        "share of variance an adaptive split must explain", closed(0, 1));
+  visit("tolerance", options.tolerance, "error allowed in a heat distance", left_open(0, 2));
+  visit_fields(options.induction, visit);
 }
 
 /// What the paper states: Figure 5's scales, mean + konst * sigma, weights from

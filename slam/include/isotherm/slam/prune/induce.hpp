@@ -1,10 +1,13 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "isotherm/base/options.hpp"
+#include "isotherm/base/range.hpp"
 #include "isotherm/base/run_context.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm/slam/prune/curve_evidence.hpp"
@@ -36,6 +39,15 @@ struct InductionOptions {
 
   void validate() const;
 };
+
+template <class Options, class Visitor>
+requires std::same_as<std::remove_const_t<Options>, InductionOptions>
+void visit_fields(Options& options, Visitor&& visit) {
+  visit("init", options.weights, "weights of the loops");
+  visit("odometry_weight", options.odometry_weight, "weight of odometry", closed(1e-9, 1e9));
+  visit("loop_weight", options.loop_weight, "largest weight of a loop", closed(1e-9, 1e9));
+  visit_fields(options.curve, visit);
+}
 
 /// A pose graph seen as a weighted graph on the same vertices.
 struct InducedGraph {

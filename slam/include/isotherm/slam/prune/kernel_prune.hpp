@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "isotherm/base/options.hpp"
+#include "isotherm/base/range.hpp"
 #include "isotherm/base/run_context.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm/slam/optimize/initialize.hpp"
@@ -38,7 +39,8 @@ using GncOptions = KernelPruneOptions<RobustKernel::gnc>;
 template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, KernelPruneOptions<Options::kKernel>>
 void visit_fields(Options& options, Visitor&& visit) {
-  visit("kernel_width", options.kernel_width, "width of the kernel; 0: its own default");
+  visit("kernel_width", options.kernel_width, "width of the kernel; 0: its own default",
+        closed(0, 1e12));
   visit("initialization", options.initialization, "where the optimisation starts");
 }
 

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "isotherm/base/options.hpp"
+#include "isotherm/base/range.hpp"
 #include "isotherm/base/run_context.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm/spectral/edges/edge_verdicts.hpp"
@@ -38,11 +39,11 @@ template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, PcmOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("pcm_odometry_confidence", options.pcm_odometry_confidence,
-        "probability that a correct loop agrees with odometry; 1: no such check");
+        "probability that a correct loop agrees with odometry; 1: no such check", left_open(0, 1));
   visit("pcm_pair_confidence", options.pcm_pair_confidence,
-        "probability that two correct loops agree");
+        "probability that two correct loops agree", open(0, 1));
   visit("pcm_clique_budget", options.pcm_clique_budget,
-        "branches of the exact clique search before the best so far counts");
+        "branches of the exact clique search before the best so far counts", closed(0, 1e12));
 }
 
 struct PcmResult {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "isotherm/base/options.hpp"
+#include "isotherm/base/range.hpp"
 #include "isotherm/base/run_context.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm/slam/optimize/initialize.hpp"
@@ -44,9 +45,10 @@ template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, RrrOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("rrr_cluster_gap", options.rrr_cluster_gap,
-        "poses between loops of one cluster, at both ends");
-  visit("rrr_confidence", options.rrr_confidence, "probability of the chi-squared tests");
-  visit("rrr_iterations", options.rrr_iterations, "steps an optimisation may take");
+        "poses between loops of one cluster, at both ends", closed(1, 1e6));
+  visit("rrr_confidence", options.rrr_confidence, "probability of the chi-squared tests",
+        open(0, 1));
+  visit("rrr_iterations", options.rrr_iterations, "steps an optimisation may take", closed(1, 1e6));
   visit("rrr_split", options.rrr_split, "let loops part from their cluster");
   visit("initialization", options.initialization, "where every optimisation starts");
 }

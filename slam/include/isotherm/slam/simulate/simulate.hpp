@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "isotherm/base/range.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 
 /// Pose graphs with known truth: a path through one of four worlds, one metre a
@@ -40,7 +41,7 @@ struct MeasurementOptions {
 /// the crossings (after the Manhattan worlds of E. Olson, J. Leonard, S. Teller,
 /// "Fast Iterative Alignment of Pose Graphs with Poor Initial Estimates", 2006).
 struct CityOptions {
-  std::int64_t poses = 3500;  ///< in [1, 10^8]
+  std::int64_t poses = 3500;  ///< in [1, 10^7]
   std::int64_t block = 4;     ///< metres between crossings, >= 1
   MeasurementOptions measurements;
   std::uint64_t seed = 0;
@@ -50,7 +51,7 @@ struct CityOptions {
 
 /// A vehicle in a three-dimensional city, which also turns up and down.
 struct Grid3dOptions {
-  std::int64_t poses = 3500;  ///< in [1, 10^8]
+  std::int64_t poses = 3500;  ///< in [1, 10^7]
   std::int64_t block = 2;     ///< metres between crossings, >= 1
   MeasurementOptions measurements;
   std::uint64_t seed = 0;
@@ -60,7 +61,7 @@ struct Grid3dOptions {
 
 /// A robot that drives laps of one circle.
 struct RingOptions {
-  std::int64_t poses = 1000;  ///< in [1, 10^8]
+  std::int64_t poses = 1000;  ///< in [1, 10^7]
   std::int64_t laps = 2;      ///< >= 1; the circle's radius follows
   MeasurementOptions measurements;
   std::uint64_t seed = 0;
@@ -71,7 +72,7 @@ struct RingOptions {
 /// A vehicle that spirals over a sphere from one pole to the other, level with
 /// the surface.
 struct SphereOptions {
-  std::int64_t poses = 2500;  ///< in [1, 10^8]
+  std::int64_t poses = 2500;  ///< in [1, 10^7]
   /// Turns around the axis, the radius follows; 0: as many as put neighbouring
   /// turns one metre apart.
   std::int64_t laps = 0;
@@ -84,14 +85,20 @@ struct SphereOptions {
 template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, MeasurementOptions>
 void visit_fields(Options& options, Visitor&& visit) {
-  visit("loops", options.loops, "correct loop closures; -1: half as many as poses");
-  visit("odometry_sigma", options.odometry_sigma, "odometry noise, metres per step");
-  visit("odometry_turn_sigma", options.odometry_turn_sigma, "odometry noise, radians per step");
-  visit("loop_sigma", options.loop_sigma, "loop closure noise, metres");
-  visit("loop_turn_sigma", options.loop_turn_sigma, "loop closure noise, radians");
-  visit("loop_radius", options.loop_radius, "largest distance of the poses a loop joins, metres");
+  visit("loops", options.loops, "correct loop closures; -1: half as many as poses",
+        closed(-1, 1e7));
+  visit("odometry_sigma", options.odometry_sigma, "odometry noise, metres per step",
+        closed(1e-9, 1e6));
+  visit("odometry_turn_sigma", options.odometry_turn_sigma, "odometry noise, radians per step",
+        closed(1e-9, 1e6));
+  visit("loop_sigma", options.loop_sigma, "loop closure noise, metres", closed(1e-9, 1e6));
+  visit("loop_turn_sigma", options.loop_turn_sigma, "loop closure noise, radians",
+        closed(1e-9, 1e6));
+  visit("loop_radius", options.loop_radius, "largest distance of the poses a loop joins, metres",
+        left_open(0, 1e6));
   visit("drift", options.drift,
-        "metres by which odometry misses the end of the path (scales its noise); 0: as it comes");
+        "metres by which odometry misses the end of the path (scales its noise); 0: as it comes",
+        closed(0, 1e9));
 }
 
 template <class Options, class Visitor>
@@ -99,24 +106,25 @@ requires(
     std::same_as<std::remove_const_t<Options>, CityOptions> ||
     std::same_as<std::remove_const_t<Options>, Grid3dOptions>) void visit_fields(Options& options,
                                                                                  Visitor&& visit) {
-  visit("poses", options.poses, "number of poses, one metre apart");
-  visit("block", options.block, "metres between street crossings");
+  visit("poses", options.poses, "number of poses, one metre apart", closed(1, 1e7));
+  visit("block", options.block, "metres between street crossings", closed(1, 1e6));
   visit_fields(options.measurements, visit);
 }
 
 template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, RingOptions>
 void visit_fields(Options& options, Visitor&& visit) {
-  visit("poses", options.poses, "number of poses, one metre apart");
-  visit("laps", options.laps, "times around the circle");
+  visit("poses", options.poses, "number of poses, one metre apart", closed(1, 1e7));
+  visit("laps", options.laps, "times around the circle", closed(1, 1e6));
   visit_fields(options.measurements, visit);
 }
 
 template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, SphereOptions>
 void visit_fields(Options& options, Visitor&& visit) {
-  visit("poses", options.poses, "number of poses, about one metre apart");
-  visit("laps", options.laps, "turns around the axis; 0: neighbouring turns one metre apart");
+  visit("poses", options.poses, "number of poses, about one metre apart", closed(1, 1e7));
+  visit("laps", options.laps, "turns around the axis; 0: neighbouring turns one metre apart",
+        closed(0, 1e6));
   visit_fields(options.measurements, visit);
 }
 

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "isotherm/base/options.hpp"
+#include "isotherm/base/range.hpp"
 #include "isotherm/base/run_context.hpp"
 #include "isotherm/spectral/edges/edge_verdicts.hpp"
 #include "isotherm/spectral/edges/threshold.hpp"
@@ -74,13 +75,14 @@ template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, JudgeEdgesOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("method", options.method, "what an edge is judged by");
-  visit("rounds", options.rounds, "heat: how often edges are judged");
+  visit("rounds", options.rounds, "heat: how often edges are judged", closed(1, 10));
   visit("control", options.control, "heat, rank: pairs that false edges resemble");
-  visit("chance", options.chance, "heat, rank: prune what is less likely true");
-  visit("scale", options.scale, "affinity: diffusion time");
+  visit("chance", options.chance, "heat, rank: prune what is less likely true", open(0, 1));
+  visit("scale", options.scale, "affinity: diffusion time", left_open(0, 1e12));
   visit("threshold", options.threshold, "other methods: rule that splits the scores");
-  visit("konst", options.konst, "deviations above the mean, for mean-sigma");
-  visit("tolerance", options.tolerance, "affinity: error allowed in the heat kernel");
+  visit("konst", options.konst, "deviations above the mean, for mean-sigma", closed(-1e6, 1e6));
+  visit("tolerance", options.tolerance, "affinity: error allowed in the heat kernel",
+        left_open(0, 1));
 }
 
 struct JudgeEdgesResult {

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "isotherm/base/options.hpp"
+#include "isotherm/base/range.hpp"
 
 /// Rules that split a list of distances into small (trusted) and large ones.
 namespace isotherm::spectral {
@@ -36,7 +37,8 @@ template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, ThresholdOptions>
 void visit_fields(Options& options, Visitor&& visitor) {
   visitor("threshold", options.rule, "how the threshold is found from the distances");
-  visitor("konst", options.konst, "standard deviations above the mean (mean-sigma)");
+  visitor("konst", options.konst, "standard deviations above the mean (mean-sigma)",
+          closed(-1e6, 1e6));
 }
 
 /// A threshold and how clearly it separates.

@@ -8,6 +8,7 @@
 
 #include "isotherm/base/options.hpp"
 #include "isotherm/base/progress.hpp"
+#include "isotherm/base/range.hpp"
 #include "isotherm/spectral/graph/laplacian.hpp"
 
 namespace isotherm::spectral {
@@ -53,13 +54,16 @@ struct EigenOptions {
 template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, EigenOptions>
 void visit_fields(Options& options, Visitor&& visitor) {
-  visitor("count", options.count, "number of smallest eigenpairs, null ones included");
+  visitor("count", options.count, "number of smallest eigenpairs, null ones included",
+          closed(1, 1e9));
   visitor("null_vectors", options.null_vectors, "give the null eigenvectors, and count them");
   visitor("eigen_solver", options.method, "how eigenpairs are computed");
-  visitor("dense_limit", options.dense_limit, "vertices up to which the dense solver is used");
-  visitor("eigen_tolerance", options.tolerance, "largest residual, relative to the norm");
+  visitor("dense_limit", options.dense_limit, "vertices up to which the dense solver is used",
+          closed(0, 1e5));
+  visitor("eigen_tolerance", options.tolerance, "largest residual, relative to the norm",
+          open(0, 1));
   visitor("check_inertia", options.check_inertia, "verify that no eigenvalue was missed");
-  visitor("max_restarts", options.max_restarts, "most restarts of the eigensolver");
+  visitor("max_restarts", options.max_restarts, "most restarts of the eigensolver", closed(1, 1e6));
 }
 
 enum class EigenStatus {

@@ -10,6 +10,7 @@
 
 #include "isotherm/base/options.hpp"
 #include "isotherm/base/progress.hpp"
+#include "isotherm/base/range.hpp"
 #include "isotherm/spectral/graph/weighted_graph.hpp"
 #include "isotherm/spectral/types.hpp"
 
@@ -52,9 +53,10 @@ struct HeatDistanceOptions {
 template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, HeatDistanceOptions>
 void visit_fields(Options& options, Visitor&& visitor) {
-  visitor("tolerance", options.tolerance, "largest width of a heat distance's bracket");
+  visitor("tolerance", options.tolerance, "largest width of a heat distance's bracket",
+          left_open(0, 2));
   visitor("heat_solver", options.method, "how heat distances are computed");
-  visitor("max_steps", options.max_steps, "most Lanczos steps a pair");
+  visitor("max_steps", options.max_steps, "most Lanczos steps a pair", closed(1, 1e6));
 }
 
 /// Heat distances of `pairs` at `scales`, row-major: pairs x scales.
