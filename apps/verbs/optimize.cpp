@@ -1,5 +1,7 @@
 #include "isotherm/slam/optimize/optimize.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <variant>
 
@@ -35,14 +37,28 @@ struct OptimizeVerb : OptionVerb<OptimizeOptions> {
     const auto result =
         optimize(graph, roles, options, {flags.threads, progress_line(flags), flags.seed});
     report(result);
-    graph.poses = result.poses;
-    if (format_suffix(output) == ".tum") {
-      write_trajectory(output, Trajectory<Pose>{graph.poses, {}}, FileFormat::tum);
-    } else if (!output.empty()) {
-      write_g2o(output, file);
-    }
+    if (!output.empty()) write_poses(graph, file, result.poses);
     write_json(flags.json, to_json(result));
     return result.status == OptimizeStatus::converged ? kOk : kNotConverged;
+  }
+
+  // `graph` is the one in `file`.
+  template <class Pose>
+  void write_poses(PoseGraph<Pose>& graph, const PoseGraphFile& file,
+                   const std::vector<Pose>& poses) const {
+    const auto is_finite = [](const Pose& pose) {
+      return pose.translation().allFinite() && pose.rotation_matrix().allFinite();
+    };
+    if (!std::all_of(poses.begin(), poses.end(), is_finite)) {
+      warn(flags, fmt::format("no finite poses were found; {} is not written", output));
+      return;
+    }
+    graph.poses = poses;
+    if (format_suffix(output) == ".tum") {
+      write_trajectory(output, Trajectory<Pose>{graph.poses, {}}, FileFormat::tum);
+    } else {
+      write_g2o(output, file);
+    }
   }
 
   template <class Pose>
@@ -55,8 +71,11 @@ struct OptimizeVerb : OptionVerb<OptimizeOptions> {
       warn(flags, fmt::format("the graph has {} connected components, each held at one pose",
                               result.components));
     }
-    say(flags, fmt::format("{}: cost {:.6g} -> {:.9g} in {} iterations, {:.2f} s",
-                           enum_name(result.status), result.initial_cost, result.final_cost,
+    const auto shown = [](double cost, int digits) {
+      return std::isfinite(cost) ? fmt::format("{:.{}g}", cost, digits) : "not finite";
+    };
+    say(flags, fmt::format("{}: cost {} -> {} in {} iterations, {:.2f} s", enum_name(result.status),
+                           shown(result.initial_cost, 6), shown(result.final_cost, 9),
                            result.iterations, result.seconds));
   }
 

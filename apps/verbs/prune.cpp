@@ -8,6 +8,7 @@
 #include "console.hpp"
 #include "isotherm/slam/evaluate/ground_truth.hpp"
 #include "isotherm/slam/graph/trusted_edges.hpp"
+#include "isotherm/slam/graph/usable_odometry.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm/slam/pipeline.hpp"
 #include "isotherm/spectral/edges/verdict_file.hpp"
@@ -134,6 +135,7 @@ struct PruneVerb {
   void run_on(PoseGraph<Pose>& graph, const PoseGraphFile& file) {
     const RunContext context{flags.threads, progress_line(flags), flags.seed};
     const auto roles = trusted.empty() ? edge_roles(graph) : read_trusted_edges(trusted, graph);
+    if (flags.strict) require_usable_odometry(graph, roles);
     PruneRun<Pose> input_run{file_title(input), options, {}};
     if (!truth.path.empty()) input_run.truth = read_ground_truth(graph, truth);
     auto result = prune_and_optimize(graph, roles, options, context);
@@ -146,6 +148,15 @@ struct PruneVerb {
     if (!verdicts.empty()) spectral::write_verdicts(verdicts, result.decisions.verdicts);
     write_json(flags.json, to_json(result.decisions, options.prune));
     if (page) write_report(explain, *page);
+  }
+
+  // Methods repair it, which is what --strict forbids.
+  template <class Pose>
+  void require_usable_odometry(const PoseGraph<Pose>& graph, const EdgeRoles& roles) const {
+    const auto unusable = unusable_information(graph, roles);
+    if (unusable.empty()) return;
+    const auto line = graph.constraints[unusable.front()].line;
+    throw ParseError({input, line, 0}, "", describe_unusable(graph, unusable));
   }
 
   // What would be read and play no part is not what was meant.

@@ -49,7 +49,12 @@ std::vector<Pose> starting_poses(const PoseGraph<Pose>& graph, const EdgeRoles& 
                                  Initialization method, const NormalEquations<Pose>& equations) {
   if (method != Initialization::automatic) return initial_poses(graph, roles, method);
   auto tree = initial_poses(graph, roles, Initialization::spanning_tree);
-  auto chordal = initial_poses(graph, roles, Initialization::chordal);
+  std::vector<Pose> chordal;
+  try {
+    chordal = initial_poses(graph, roles, Initialization::chordal);
+  } catch (const NumericalError&) {
+    return tree;  // information over too many decades for a linear system
+  }
   return equations.chi2(chordal).sum() < equations.chi2(tree).sum() ? chordal : tree;
 }
 

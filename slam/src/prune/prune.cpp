@@ -5,6 +5,7 @@
 
 #include "graph/candidate_verdicts.hpp"
 #include "isotherm/base/error.hpp"
+#include "isotherm/slam/graph/usable_odometry.hpp"
 
 namespace isotherm::slam {
 namespace {
@@ -96,8 +97,16 @@ PruneResult prune(const PoseGraph<Pose>& graph, const EdgeRoles& roles, const Pr
   const auto start = std::chrono::steady_clock::now();
   EdgeRoles judged = roles;
   const auto self_edges = take_self_edges(graph, judged);
-  PruneResult result = std::visit(
-      [&](const auto& own) { return detail::prune_by(graph, judged, own, run); }, options);
+  const auto judge = [&](const PoseGraph<Pose>& usable) {
+    return std::visit([&](const auto& own) { return detail::prune_by(usable, judged, own, run); },
+                      options);
+  };
+  const auto unusable = unusable_information(graph, judged);
+  PruneResult result =
+      unusable.empty() ? judge(graph) : judge(with_usable_information(graph, judged, unusable));
+  if (!unusable.empty()) {
+    result.warnings.push_back(describe_unusable(graph, unusable) + "; made less extreme");
+  }
   if (!self_edges.empty()) set_aside(graph, self_edges, result);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
