@@ -19,6 +19,8 @@ constexpr double kLargestDamping = 1e12;
 // Chi-squared that nothing but rounding leaves: noise of one standard deviation
 // in a single measurement is 1.
 constexpr double kNoCost = 1e-12;
+// Part of the cost that is lost when so many terms are summed.
+constexpr double kRounding = 1e-12;
 
 double total_cost(const EdgeCost& edge_cost, const Eigen::VectorXd& chi2) {
   double sum = 0.0;
@@ -70,6 +72,16 @@ class Minimizer {
     return change <= std::max(options_.cost_tolerance * cost_, kNoCost);
   }
 
+  // Newton's decrement: what the quadratic model promises of an undamped step from here.
+  // Steps that are damped, or short for another reason, say nothing about how far it is:
+  // on long chains with few loops most of what is left may lie in directions that are
+  // hardly measured.
+  bool nothing_left(double promised, double damping) {
+    if (!negligible(promised)) return false;
+    if (damping <= kNegligibleDamping) return true;
+    return negligible(-gauss_newton_step(equations_).dot(equations_.gradient()));
+  }
+
   // Decreases that keep the ratio of the last two would sum to this much more.
   // The first step has no ratio and does not end it.
   double remaining_decrease(double decrease) {
@@ -96,7 +108,7 @@ class Minimizer {
         best_cost = cost_;
         best_poses = poses_;
       }
-      if (negligible(promised) || negligible(remaining_decrease(previous - cost_))) {
+      if (negligible(promised) && negligible(remaining_decrease(previous - cost_))) {
         status = OptimizeStatus::converged;
         break;
       }
@@ -114,18 +126,18 @@ class Minimizer {
     while (summary_.iterations < options_.max_iterations) {
       report_progress(options_, summary_.iterations++);
       const auto trial = spectral::try_damped_step(*this, damping.value, cost_);
+      if (trial.solved && nothing_left(trial.promised, damping.value)) {
+        if (trial.lower) cost_ = trial.cost;
+        return OptimizeStatus::converged;
+      }
       if (!trial.lower) {
-        if (trial.solved && negligible(trial.promised)) return OptimizeStatus::converged;
+        if (trial.solved && trial.promised <= kRounding * cost_) return OptimizeStatus::converged;
         damping.follow(-1.0);
         if (damping.value > kLargestDamping) return OptimizeStatus::diverged;
         continue;
       }
       const double decrease = cost_ - trial.cost;
-      const double remaining = remaining_decrease(decrease);
-      const bool done = negligible(trial.promised) ||
-                        negligible(damping.value <= kNegligibleDamping ? remaining : decrease);
       cost_ = trial.cost;
-      if (done) return OptimizeStatus::converged;
       linearize();
       scale_ = spectral::damping_scale(equations_.hessian());
       damping.follow(decrease / trial.promised);

@@ -8,6 +8,8 @@
 #include <Eigen/Dense>
 
 #include "isotherm/base/error.hpp"
+#include "isotherm/slam/io/pose_graph_file.hpp"
+#include "isotherm_test/data.hpp"
 #include "slam/loop_graph.hpp"
 
 namespace isotherm::slam {
@@ -317,6 +319,30 @@ TYPED_TEST(Optimize, CanBeCancelled) {
   const auto [graph, truth] = random_loop_graph<Pose>(this->random, 10, 10, 1.0);
   const auto stop = [](const Progress& progress) { return progress.done < 1; };
   EXPECT_THROW(optimize(graph, {}, {.progress = stop}), Cancelled);
+}
+
+TYPED_TEST(Optimize, DefaultToleranceIsThatOfTheOptimum) {
+  using Pose = TypeParam;
+  for (int k = 0; k < 10; ++k) {
+    // Few loops on a long chain: much of what is left lies where hardly anything is measured.
+    const auto [graph, truth] = random_loop_graph<Pose>(this->random, 400, 1 + 3 * k, 1.0);
+    const auto optimum = optimize(graph, {.cost_tolerance = 1e-13});
+    for (const auto start : {Initialization::automatic, Initialization::odometry}) {
+      const auto found = optimize(graph, {.initialization = start});
+      if (found.final_cost > 1.1 * optimum.final_cost) continue;  // another minimum
+      EXPECT_EQ(found.status, OptimizeStatus::converged);
+      EXPECT_LE(found.final_cost, (1.0 + 2e-6) * optimum.final_cost) << k;
+    }
+  }
+}
+
+TEST(OptimizeRealData, Ais2klinikEndsAtItsOptimum) {
+  ISOTHERM_REAL_DATA_OR_SKIP(path, "posegraph2d/ais2klinik/ais2klinik.g2o");
+  const auto graph = read_pose_graph(path.string()).graph;
+  const auto found = optimize(graph);
+  const auto optimum = optimize(graph, {.cost_tolerance = 1e-12});
+  EXPECT_EQ(found.status, OptimizeStatus::converged);
+  EXPECT_LE(found.final_cost, (1.0 + 1e-6) * optimum.final_cost);
 }
 
 TYPED_TEST(Optimize, RejectsWhatItCannotRead) {

@@ -43,8 +43,8 @@ struct OptimizeOptions {
   Initialization initialization = Initialization::automatic;
   OptimizeAlgorithm algorithm = OptimizeAlgorithm::automatic;
   int max_iterations = 100;  ///< accepted and rejected steps, >= 0
-  /// Converged where what is left to gain, extrapolated from the last two steps,
-  /// is less than this fraction of the cost; > 0.
+  /// Converged where what an undamped step promises to gain (Newton's decrement) is less than
+  /// this fraction of the cost; in (0, 1].
   double cost_tolerance = 1e-6;
 
   void validate() const;
