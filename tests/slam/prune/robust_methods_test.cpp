@@ -207,6 +207,29 @@ TEST(ClusterLoops, JoinsThroughNeighboursAtBothEnds) {
   EXPECT_THAT(clusters, ElementsAre(ElementsAre(0, 1, 2), ElementsAre(3), ElementsAre(4)));
 }
 
+TEST(Pcm, TheOrderOfTheFilePlaysNoPart) {
+  Random random(3);
+  // So many false loops that several cliques are largest.
+  const auto made = poisoned_graph<Pose2>(random, 60, 4, 60);
+  const auto roles = edge_roles(made.graph);
+  const auto verdicts = pcm(made.graph, roles).verdicts;
+  for (int k = 0; k < 10; ++k) {
+    auto shuffled = made.graph;
+    std::vector<Index> place = roles.candidates;
+    for (std::size_t c = place.size(); c > 1; --c) {
+      std::swap(place[c - 1], place[random.index(c)]);
+    }
+    for (std::size_t c = 0; c < place.size(); ++c) {
+      shuffled.constraints[place[c]] = made.graph.constraints[roles.candidates[c]];
+    }
+    const auto again = pcm(shuffled, edge_roles(shuffled)).verdicts;
+    for (std::size_t c = 0; c < place.size(); ++c) {
+      const auto at = static_cast<std::size_t>(place[c] - roles.candidates.front());
+      EXPECT_EQ(again[at].verdict, verdicts[c].verdict) << k << " " << c;
+    }
+  }
+}
+
 TEST(RobustMethods, OptionsOutOfRange) {
   const PoseGraph<Pose2> graph;
   EXPECT_THROW(rrr(graph, {}, {.rrr_cluster_gap = 0}), InvalidArgument);

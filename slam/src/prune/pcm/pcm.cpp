@@ -62,9 +62,20 @@ double cycle_chi2(const UncertainPose<Pose>& cycle) {
 
 template <class Pose>
 struct Loop {
+  std::size_t candidate;
   Index from;
   Index to;
   UncertainPose<Pose> measured;
+
+  // Of largest cliques there may be many, and the test of a pair is not quite symmetric:
+  // what they are, not where they stand in the file, says which loop comes first.
+  bool operator<(const Loop& other) const {
+    if (from != other.from) return from < other.from;
+    if (to != other.to) return to < other.to;
+    const typename Pose::Tangent a = measured.T.log();
+    const typename Pose::Tangent b = other.measured.T.log();
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  }
 };
 
 template <class Pose>
@@ -90,11 +101,13 @@ class PairCheck {
 
 // Loops that point back in time are turned round, so that all ends correspond.
 template <class Pose>
-Loop<Pose> oriented(const Constraint<Pose>& constraint) {
+Loop<Pose> oriented(std::size_t candidate, const Constraint<Pose>& constraint) {
   const UncertainPose<Pose> measured{
       constraint.T_from_to, covariance_from_information<Pose::kDof>(constraint.information)};
-  if (constraint.from <= constraint.to) return {constraint.from, constraint.to, measured};
-  return {constraint.to, constraint.from, inverse(measured)};
+  if (constraint.from <= constraint.to) {
+    return {candidate, constraint.from, constraint.to, measured};
+  }
+  return {candidate, constraint.to, constraint.from, inverse(measured)};
 }
 
 }  // namespace
@@ -113,7 +126,6 @@ PcmResult pcm(const PoseGraph<Pose>& given, const EdgeRoles& roles, const PcmOpt
   const double odometry_limit =
       check_odometry ? chi_squared_quantile(options.pcm_odometry_confidence, Pose::kDof) : 0.0;
   const auto odometry_checks = odometry_chi2(graph, roles);
-  std::vector<Index> passed;
   std::vector<Loop<Pose>> loops;
   for (std::size_t c = 0; c < odometry_checks.size(); ++c) {
     if (check_odometry && odometry_checks[c].chi2 > odometry_limit) {
@@ -124,9 +136,9 @@ PcmResult pcm(const PoseGraph<Pose>& given, const EdgeRoles& roles, const PcmOpt
       verdict.stage = "odometry";
       continue;
     }
-    passed.push_back(static_cast<Index>(c));
-    loops.push_back(oriented(graph.constraints[roles.candidates[c]]));
+    loops.push_back(oriented(c, graph.constraints[roles.candidates[c]]));
   }
+  std::sort(loops.begin(), loops.end());
 
   const auto count = static_cast<Index>(loops.size());
   const OdometryPaths<Pose> odometry(graph, roles);
@@ -149,7 +161,7 @@ PcmResult pcm(const PoseGraph<Pose>& given, const EdgeRoles& roles, const PcmOpt
     const auto disagreements =
         std::count_if(clique.members.begin(), clique.members.end(),
                       [&](Index member) { return member != a && !agreement.connected(a, member); });
-    auto& verdict = result.verdicts[passed[a]];
+    auto& verdict = result.verdicts[loops[a].candidate];
     const bool member = std::binary_search(clique.members.begin(), clique.members.end(), a);
     verdict.verdict = member ? Verdict::keep : Verdict::prune;
     verdict.score = static_cast<double>(disagreements) /

@@ -44,8 +44,8 @@ template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, InductionOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("init", options.weights, "weights of the loops");
-  visit("odometry_weight", options.odometry_weight, "weight of odometry", closed(1e-9, 1e9));
-  visit("loop_weight", options.loop_weight, "largest weight of a loop", closed(1e-9, 1e9));
+  visit("odometry_weight", options.odometry_weight, "weight of odometry", left_open(0, 1e9));
+  visit("loop_weight", options.loop_weight, "largest weight of a loop", left_open(0, 1e9));
   visit_fields(options.curve, visit);
 }
 
