@@ -1,6 +1,7 @@
 #include "report/base64.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -9,6 +10,16 @@ namespace {
 
 constexpr std::string_view kDigits =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+// What each character stands for, 64 for those that are no digit.
+std::array<std::uint8_t, 256> digit_values() {
+  std::array<std::uint8_t, 256> values;
+  values.fill(64);
+  for (std::size_t k = 0; k < kDigits.size(); ++k) {
+    values[static_cast<unsigned char>(kDigits[k])] = static_cast<std::uint8_t>(k);
+  }
+  return values;
+}
 
 }  // namespace
 
@@ -27,6 +38,27 @@ std::string base64(std::span<const std::byte> bytes) {
     out += 4;
   }
   return text;
+}
+
+std::optional<std::vector<std::byte>> from_base64(std::string_view text) {
+  static const auto kValues = digit_values();
+  if (text.size() % 4 != 0) return std::nullopt;
+  const std::size_t padding = text.ends_with("==") ? 2 : text.ends_with('=') ? 1 : 0;
+  std::vector<std::byte> bytes;
+  bytes.reserve(text.size() / 4 * 3);
+  for (std::size_t in = 0; in < text.size(); in += 4) {
+    const std::size_t digits = in + 4 == text.size() ? 4 - padding : 4;
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::uint8_t value = k < digits ? kValues[static_cast<unsigned char>(text[in + k])] : 0;
+      if (value == 64) return std::nullopt;
+      group = group << 6 | value;
+    }
+    for (std::size_t k = 0; k + 1 < digits; ++k) {
+      bytes.push_back(static_cast<std::byte>(group >> (16 - 8 * k) & 255));
+    }
+  }
+  return bytes;
 }
 
 }  // namespace isotherm::apps

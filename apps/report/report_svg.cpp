@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "report/xml_text.hpp"
+
 namespace isotherm::apps {
 namespace {
 
@@ -32,27 +34,6 @@ struct Layer {
   std::string path;    // SVG path data
   std::int64_t lines = 0;
 };
-
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '&':
-        safe += "&amp;";
-        break;
-      default:
-        // Control characters are not allowed in XML, not even escaped.
-        safe += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return safe;
-}
 
 // The plane as it is; space seen from 30 degrees above, turned by 30 degrees.
 Point project(const float* position, int dimension) {
@@ -144,7 +125,7 @@ std::string legend(const std::vector<Layer>& layers) {
     const std::string label = fmt::format("{} ({})", layer.label, layer.lines);
     text +=
         fmt::format("<path d=\"M{0:.0f} {1}h24\" {2}/>\n<text x=\"{3:.0f}\" y=\"{4}\">{5}</text>\n",
-                    x, kHeight - 16.0, stroke(layer), x + 30.0, kHeight - 12.0, escaped(label));
+                    x, kHeight - 16.0, stroke(layer), x + 30.0, kHeight - 12.0, xml_text(label));
     x += 44.0 + 6.5 * static_cast<double>(label.size());
   }
   return text;
@@ -183,7 +164,7 @@ std::string report_svg(const Report& report) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
       "height=\"{1}\" font-family=\"sans-serif\" font-size=\"12\">\n<title>{2}</title>\n"
       "<desc>{3}</desc>\n<rect width=\"{0}\" height=\"{1}\" fill=\"#ffffff\"/>\n",
-      kWidth, kHeight, escaped(report.title), escaped(layout.label));
+      kWidth, kHeight, xml_text(report.title), xml_text(layout.label));
   for (const auto& layer : layers) {
     svg += fmt::format("<path {} d=\"{}\"/>\n", stroke(layer), layer.path);
   }

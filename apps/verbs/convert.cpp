@@ -1,7 +1,11 @@
-#include <filesystem>
+#include <array>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -20,19 +24,36 @@ namespace {
 using slam::FileContent;
 using slam::FileFormat;
 
-// The format that goes with the end of a name; ".gz" plays no part.
+// Which name goes with which format; one that goes with several tells none.
+constexpr std::array<std::pair<std::string_view, FileFormat>, 10> kSuffixes = {{
+    {".g2o", FileFormat::g2o},
+    {".graph", FileFormat::toro},
+    {".pyfg", FileFormat::pyfg},
+    {".tum", FileFormat::tum},
+    {".kitti", FileFormat::kitti},
+    {".euroc", FileFormat::euroc},
+    {".mtx", FileFormat::matrix_market},
+    {".csv", FileFormat::euroc},
+    {".csv", FileFormat::ranges},
+    {".csv", FileFormat::edges},
+}};
+
 std::optional<FileFormat> format_of_name(const std::string& path) {
-  std::filesystem::path name(path);
-  if (name.extension() == ".gz") name.replace_extension();
-  const auto suffix = name.extension();
-  if (suffix == ".g2o") return FileFormat::g2o;
-  if (suffix == ".graph") return FileFormat::toro;
-  if (suffix == ".pyfg") return FileFormat::pyfg;
-  if (suffix == ".tum") return FileFormat::tum;
-  if (suffix == ".kitti") return FileFormat::kitti;
-  if (suffix == ".euroc") return FileFormat::euroc;
-  if (suffix == ".mtx") return FileFormat::matrix_market;
-  return std::nullopt;
+  std::optional<FileFormat> found;
+  for (const auto& [suffix, format] : kSuffixes) {
+    if (suffix != format_suffix(path)) continue;
+    if (found) return std::nullopt;
+    found = format;
+  }
+  return found;
+}
+
+std::vector<std::string_view> suffixes_of(FileFormat format) {
+  std::vector<std::string_view> found;
+  for (const auto& [suffix, other] : kSuffixes) {
+    if (other == format) found.push_back(suffix);
+  }
+  return found;
 }
 
 // The structure of a pose graph: one edge of weight 1 a constraint.
@@ -57,19 +78,25 @@ struct ConvertVerb : OptionVerb<NoOptions> {
     const auto source = slam::require_format(reader);
     const ReadReport report = convert(reader, source, target);
     for (const auto& diagnostic : report.diagnostics) warn(flags, to_string(diagnostic));
+    for (const auto& loss : losses_) warn(flags, loss);
     say(flags, fmt::format("{} ({}) -> {} ({})", input, report.format, output, enum_name(target)));
     write_json(flags.json, {{"schema", "isotherm.convert/1"},
                             {"from", report.format},
                             {"to", enum_name(target)},
                             {"records", report.records},
                             {"skipped", report.skipped},
-                            {"repairs", report.repairs}});
+                            {"repairs", report.repairs},
+                            {"losses", losses_}});
     return kOk;
   }
 
  private:
   FileFormat target_format() const {
-    if (!to.empty()) return enum_value<FileFormat>("--to", to);
+    if (!to.empty()) {
+      const auto target = enum_value<FileFormat>("--to", to);
+      require_suffix("--output", output, suffixes_of(target));
+      return target;
+    }
     const auto named = format_of_name(output);
     if (!named) {
       throw InvalidArgument("--to", "is needed where the name of the output tells no format");
@@ -77,7 +104,7 @@ struct ConvertVerb : OptionVerb<NoOptions> {
     return *named;
   }
 
-  ReadReport convert(TextReader& reader, FileFormat source, FileFormat target) const {
+  ReadReport convert(TextReader& reader, FileFormat source, FileFormat target) {
     const ReadOptions reading{.strict = flags.strict};
     const bool to_ranges = target == FileFormat::ranges || target == FileFormat::pyfg;
     switch (slam::content_of(source)) {
@@ -100,10 +127,32 @@ struct ConvertVerb : OptionVerb<NoOptions> {
                                               enum_name(target)));
   }
 
-  ReadReport convert_pose_graph(slam::PoseGraphFile file, FileFormat target) const {
+  // What the target has no place for.
+  void note_losses(const slam::PoseGraphFile& file) {
+    const auto fixed = std::visit([](const auto& graph) { return graph.fixed.size(); }, file.graph);
+    if (fixed > 0) {
+      losses_.push_back(
+          fmt::format("TORO has no FIX: the marks of fixed vertices are lost ({})", fixed));
+    }
+    if (!file.other_lines.empty()) {
+      losses_.push_back(
+          fmt::format("comments and unknown records are lost ({})", file.other_lines.size()));
+    }
+  }
+  void note_losses(const spectral::GraphFile& file) {
+    for (std::size_t k = 0; k < file.ids.size(); ++k) {
+      if (file.ids[k] == k + 1) continue;
+      losses_.push_back(fmt::format("vertices are numbered from 1 in ascending order: {} is now {}",
+                                    file.ids[k], k + 1));
+      return;
+    }
+  }
+
+  ReadReport convert_pose_graph(slam::PoseGraphFile file, FileFormat target) {
     if (target == FileFormat::g2o) {
       slam::write_g2o(output, file);
     } else if (target == FileFormat::toro) {
+      note_losses(file);
       slam::write_toro(output, file.graph);
     } else if (slam::content_of(target) == FileContent::trajectory) {
       slam::TrajectoryFile trajectory;
@@ -139,16 +188,19 @@ struct ConvertVerb : OptionVerb<NoOptions> {
     return file.report;
   }
 
-  ReadReport convert_graph(const spectral::GraphFile& file, FileFormat target) const {
+  ReadReport convert_graph(const spectral::GraphFile& file, FileFormat target) {
     if (target == FileFormat::edges) {
       spectral::write_edge_csv(output, file.graph, file.ids);
     } else if (target == FileFormat::matrix_market) {
+      note_losses(file);
       spectral::write_matrix_market(output, file.graph);
     } else {
       refuse(file.report, target);
     }
     return file.report;
   }
+
+  std::vector<std::string> losses_;
 };
 
 }  // namespace

@@ -3,8 +3,8 @@
 #include "isotherm/base/error.hpp"
 #include "json_file.hpp"
 #include "option_verb.hpp"
+#include "report/report_check.hpp"
 #include "report/report_flags.hpp"
-#include "report/report_json.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {
@@ -12,11 +12,7 @@ namespace {
 
 Json read_document(const std::string& path) {
   auto document = read_json(path);
-  if (!document.is_object() || document.value("schema", Json()) != kReportSchema) {
-    throw ParseError({path, 0, 0}, "",
-                     std::string("is not an ") + kReportSchema +
-                         " document; 'prune --report FILE.json' writes one");
-  }
+  check_report(document, path);
   return document;
 }
 

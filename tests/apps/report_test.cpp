@@ -217,4 +217,59 @@ TEST_F(Report, OtherDocumentsAreRefused) {
   EXPECT_FALSE(std::filesystem::exists(folder / "page.html"));
 }
 
+TEST_F(Report, EveryMemberOfADocumentIsChecked) {
+  write_text(folder / "five.g2o", std::string(kFive));
+  run_ok("prune five.g2o --report document.json");
+  const auto whole = Json::parse(read_text(folder / "document.json"));
+  const auto expect_refused = [&](const Json& document, const std::string& place) {
+    write_text(folder / "changed.json", document.dump());
+    const auto result = run("report changed.json -o page.html");
+    EXPECT_EQ(result.code, 3) << place;
+    EXPECT_THAT(result.err, HasSubstr("changed.json: " + place));
+    EXPECT_FALSE(std::filesystem::exists(folder / "page.html")) << place;
+  };
+  for (const auto& [key, value] : whole.items()) {
+    auto without = whole;
+    without.erase(key);
+    expect_refused(without, key == "schema" ? "is not an" : "the document has no member '" + key);
+    auto other = whole;
+    other[key] = true;
+    expect_refused(other, key == "schema" ? "is not an" : key);
+  }
+  const auto change = [&](const std::string& pointer, const Json& value, const std::string& place) {
+    auto document = whole;
+    document[Json::json_pointer(pointer)] = value;
+    expect_refused(document, place);
+  };
+  change("/kind", "map", "kind must be one of");
+  change("/dimension", 4, "dimension must be");
+  change("/nodes/count", 1, "nodes.names has");
+  change("/nodes/count", -1, "nodes.count must be an integer");
+  change("/layouts", Json::array(), "layouts must not be empty");
+  change("/layouts/0/positions/f32", "AAAA", "layouts[0].positions holds no base64");
+  change("/layouts/0/positions/f32", "AAAA*AA=", "layouts[0].positions holds no base64");
+  change("/layouts/0/positions/f32", "AACAPw==", "layouts[0].positions has 1 entries");
+  change("/candidates/count", 17, "candidates.edge has");
+  change("/candidates/verdict/u8", "CQkJCQ==", "candidates.verdict ");
+  change("/trusted/i32", "/////wAAAAA=", "trusted points to -1");
+  change("/rounds/columns", {"one", 2}, "rounds.columns[1] must be a string");
+  write_text(folder / "changed.json", whole.dump());
+  run_ok("report changed.json -o page.html");
+}
+
+TEST_F(Report, ThePictureIsXmlWhateverTheFileIsCalled) {
+  for (const std::string name :
+       {"a&b<c>.g2o", "quote\"s'.g2o", "latin\xE4.g2o", "bell\x07\x1B.g2o", "\xED\xA0\x80.g2o",
+        "\xEF\xBF\xBE.g2o", "\xF4\x90\x80\x80.g2o", "\xC0\xAF.g2o", "gr\xC3\xBC\xC3\x9F.g2o"}) {
+    write_text(folder / name, std::string(kFive));
+    std::string quoted = name;
+    if (const auto at = quoted.find('\''); at != quoted.npos) quoted.replace(at, 1, "'\\''");
+    run_ok("prune '" + quoted + "' --svg map.svg -q");
+    const std::string check =
+        "python3 -c 'import sys, xml.dom.minidom as x; x.parse(sys.argv[1])' '";
+    EXPECT_EQ(std::system((check + file("map.svg") + "'").c_str()), 0) << name;
+  }
+  EXPECT_THAT(read_text(folder / "map.svg"), HasSubstr("<title>gr\xC3\xBC\xC3\x9F.g2o</title>"));
+}
+
 }  // namespace

@@ -150,6 +150,9 @@ std::vector<std::optional<Pose>> read_ground_truth(const PoseGraph<Pose>& graph,
   TextReader reader(source.path);
   const FileFormat format = detect_format(reader);
   if (content_of(format) == FileContent::pose_graph) {
+    if (!source.timestamps.empty()) {
+      throw InvalidArgument("timestamps", "have no use: " + source.path + " is matched by id");
+    }
     return from_pose_graph(graph, read_pose_graph(reader, format));
   }
   const auto file = read_trajectory(reader, format);

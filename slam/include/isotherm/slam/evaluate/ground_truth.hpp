@@ -28,8 +28,8 @@ struct GroundTruthSource {
 /// For a graph in the plane, poses in space are seen from above: KITTI's camera
 /// poses along the camera's y (x is the camera's z, y its -x), others along z.
 /// Planar ground truth of a graph in space is lifted to z = 0.
-/// @throws FileError, ParseError; InvalidArgument if times are needed and absent, or
-///   a trajectory without times has another length than the graph
+/// @throws FileError, ParseError; InvalidArgument if times are needed and absent,
+///   or given for a pose graph, or a trajectory without times has another length than the graph
 template <class Pose>
 std::vector<std::optional<Pose>> read_ground_truth(const PoseGraph<Pose>& graph,
                                                    const GroundTruthSource& source);

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "option_flags.hpp"
+
+namespace isotherm::apps {
+
+/// Whether the page can show `document`: a report document of this version with every member
+/// there, of its type, of the length that the others ask for, and with every position inside
+/// what it points into.
+/// @throws ParseError naming `path` and the member that is not so
+void check_report(const Json& document, const std::string& path);
+
+}  // namespace isotherm::apps
