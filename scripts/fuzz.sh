@@ -2,13 +2,27 @@
 # Builds the fuzz harnesses with clang and runs each for some time, one after the other.
 # Finds are left in build/fuzz/finds.
 # usage: scripts/fuzz.sh [SECONDS [HARNESS ...]]     (default: 600 seconds, all)
+# The harness `options` is a script that runs the command, built with the preset test.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 seconds=${1:-600}
 shift || true
 harnesses=("$@")
-if [ "${#harnesses[@]}" -eq 0 ]; then harnesses=(pose_graph trajectory ranges graph points csv); fi
+if [ "${#harnesses[@]}" -eq 0 ]; then
+  harnesses=(pose_graph trajectory ranges graph points csv options)
+fi
+
+fuzz_options() {
+  cmake --preset test
+  cmake --build --preset test --target isotherm_command
+  echo "fuzz: options, $seconds s"
+  python3 tests/fuzz/fuzz_options.py build/test/apps/isotherm --seconds "$seconds" --seed "$RANDOM"
+}
+if [ "${harnesses[*]}" = options ]; then
+  fuzz_options
+  exit
+fi
 
 if ! command -v clang++-14 >/dev/null; then
   echo "fuzz: needs clang++-14 (Debian package clang-14)" >&2
@@ -18,6 +32,10 @@ cmake --preset fuzz
 cmake --build build/fuzz --target fuzzers
 mkdir -p build/fuzz/finds
 for name in "${harnesses[@]}"; do
+  if [ "$name" = options ]; then
+    fuzz_options
+    continue
+  fi
   work=build/fuzz/work/$name
   mkdir -p "$work"
   echo "fuzz: $name, $seconds s"
