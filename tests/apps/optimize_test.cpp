@@ -36,6 +36,18 @@ TEST_F(OptimizeCommand, BringsTheTrajectoryToTheTruth) {
   }
 }
 
+TEST_F(OptimizeCommand, EndsAtTheOptimumByDefault) {
+  run_ok("simulate city --poses 3000 --loops 60 --drift 50 --seed 2 -o city.g2o");
+  run_ok("simulate sphere --poses 600 --loops 40 --seed 2 -o sphere.g2o");
+  for (const std::string graph : {"city.g2o", "sphere.g2o"}) {
+    const auto cost = [&](const std::string& flags) {
+      const auto json = run_ok("optimize " + graph + " -q --json - " + flags);
+      return nlohmann::json::parse(json)["final_cost"].get<double>();
+    };
+    EXPECT_LE(cost(""), (1.0 + 2e-6) * cost("--cost-tolerance 1e-13")) << graph;
+  }
+}
+
 TEST_F(OptimizeCommand, KernelsAndAlgorithms) {
   make_city();
   for (const std::string kernel : {"huber", "cauchy", "dcs", "sc", "gnc", "gnc-gm"}) {

@@ -1,4 +1,7 @@
 // The main job from file to file.
+#include <cstdlib>
+#include <set>
+#include <sstream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -109,6 +112,33 @@ TEST_F(PruneCommand, PresetSelectsItsMethodOrIsRefused) {
   isotherm_test::write_text(folder / "c.json", R"({"method": "chi2"})");
   EXPECT_EQ(run("prune a.g2o --preset datta2016 --config c.json --dump-config").code, 2);
   EXPECT_EQ(run("prune a.g2o --preset nobody2000 --dump-config").code, 2);
+}
+
+TEST_F(PruneCommand, TheOrderOfTheFilePlaysNoPartForPcm) {
+  make_corrupted();
+  std::istringstream lines(read_text(folder / "bad.g2o"));
+  std::string vertices_and_odometry;
+  std::string loops;  // the last one first
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream fields(line);
+    std::string tag;
+    long from = 0;
+    long to = 0;
+    fields >> tag >> from >> to;
+    if (tag == "EDGE_SE2" && std::abs(from - to) != 1) {
+      loops.insert(0, line + "\n");
+    } else {
+      vertices_and_odometry += line + "\n";
+    }
+  }
+  isotherm_test::write_text(folder / "turned.g2o", vertices_and_odometry + loops);
+  const auto kept = [&](const std::string& name) {
+    std::istringstream all(run_ok("prune " + name + " --method pcm -q -o -"));
+    std::multiset<std::string> sorted;
+    for (std::string line; std::getline(all, line);) sorted.insert(line);
+    return sorted;
+  };
+  EXPECT_EQ(kept("bad.g2o"), kept("turned.g2o"));
 }
 
 TEST_F(PruneCommand, SameBytesForAnyNumberOfThreads) {

@@ -197,9 +197,9 @@ def problem_of(code, said, stopped, refused, outputs):
     left = [name for name in outputs if os.path.exists(name)]
     if code == FAILURE and "out of memory" in said:
         return f"out of memory leaves {left}" if left else None
-    if stopped:
-        return None if code == INTERRUPTED and not left else f"does not stop: {code}, {left}"
-    if code not in (OK, USAGE, BAD_INPUT, NOT_CONVERGED):
+    if code == INTERRUPTED and stopped:
+        return f"an interrupted run leaves {left}" if left else None
+    if code not in (OK, USAGE, BAD_INPUT, NOT_CONVERGED):  # done before it heeded Ctrl-C
         return f"exit code {code}"
     if refused and code != USAGE:
         return f"a value out of range is taken: {code}"

@@ -41,10 +41,11 @@ hostile.rounds = { columns: [MESSAGE], rows: [[MESSAGE]] };
 writeFileSync(join(folder, 'hostile.json'), JSON.stringify(hostile));
 isotherm(folder, 'report', 'hostile.json', '-o', 'hostile.html');
 isotherm(folder, 'report', 'saved.json', '-o', 'named.html');
-const damaged = structuredClone(document);
-damaged.candidates.from = { i32: 'AQAAAP///38=' };
-writeFileSync(join(folder, 'damaged.json'), JSON.stringify(damaged));
-isotherm(folder, 'report', 'damaged.json', '-o', 'damaged.html');
+// The command makes no page of a damaged document; a page may be damaged later.
+const page = readFileSync(join(folder, 'named.html'), 'utf8');
+const from = `"from":{"i32":"${document.candidates.from.i32}"}`;
+assert.ok(page.includes(from));
+writeFileSync(join(folder, 'damaged.html'), page.replace(from, '"from":{"i32":"AQAAAP///38="}'));
 
 let browser;
 before(async () => {

@@ -24,6 +24,7 @@
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm/slam/graph/trajectory.hpp"
 #include "isotherm/slam/graph/trusted_edges.hpp"
+#include "isotherm/slam/graph/usable_odometry.hpp"
 #include "isotherm/slam/io/file_format.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm/slam/io/trajectory_file.hpp"
