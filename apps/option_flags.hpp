@@ -135,19 +135,25 @@ CLI::Option* add_field_flag(CLI::App& app, std::string_view name, const T& value
   return option;
 }
 
-/// Gives the field `key` of `options` its value; false if there is no such field.
-/// @throws InvalidArgument for a value of the wrong type or out of range
+/// Gives the field `key` of `options` its value, which may be out of range; false if there is no
+/// such field. @throws InvalidArgument for a value of the wrong type
+template <class Options>
+bool assign_field(Options& options, std::string_view key, const Json& json) {
+  bool known = false;
+  visit_fields(options, [&](std::string_view name, auto& value, std::string_view, const auto&...) {
+    if (name != key) return;
+    field_from_json(name, json, value);
+    known = true;
+  });
+  return known;
+}
+
+/// The same, but @throws InvalidArgument also for a value out of range
 template <class Options>
 bool take_field(Options& options, std::string_view key, const Json& json) {
-  bool known = false;
-  visit_fields(options,
-               [&](std::string_view name, auto& value, std::string_view, const auto&... range) {
-                 if (name != key) return;
-                 field_from_json(name, json, value);
-                 (require_in_range(name, value, range), ...);
-                 known = true;
-               });
-  return known;
+  if (!assign_field(options, key, json)) return false;
+  require_fields_in_range(options);
+  return true;
 }
 
 }  // namespace detail

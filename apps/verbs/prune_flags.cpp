@@ -37,11 +37,14 @@ bool take(PruneOptions& options, std::string_view key, const Json& value) {
   return std::visit([&](auto& own) { return detail::take_field(own, key, value); }, options);
 }
 
-// The names of the methods that have the option, checking that the value is of its type.
+// The names of the methods that have the option, checking that the value is of its type. Its
+// range may be another one for each.
 std::vector<std::string> owners(std::string_view key, const Json& value) {
   std::vector<std::string> names;
   for (auto& method : prune_methods()) {
-    if (take(method, key, value)) names.emplace_back(method_name(method));
+    const bool known =
+        std::visit([&](auto& own) { return detail::assign_field(own, key, value); }, method);
+    if (known) names.emplace_back(method_name(method));
   }
   return names;
 }

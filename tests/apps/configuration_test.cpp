@@ -23,6 +23,10 @@ class Configuration : public CommandTest {
 
 TEST_F(Configuration, TakesNumbersAsTheyStand) {
   EXPECT_EQ(with_config(R"({"window": 7, "significance": 0.25, "calibrate": false})").code, 0);
+  // What another method has may be out of range for a third.
+  EXPECT_EQ(with_config(R"({"method": "heat", "significance": 0.7})").code, 0);
+  EXPECT_THAT(run("prune x --method heat --significance 0.7").err,
+              HasSubstr("is an option of consensus, evidence, chi2, not of method heat"));
   const struct {
     const char* text;
     const char* problem;
