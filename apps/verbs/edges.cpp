@@ -30,7 +30,7 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
   std::string input;
   std::string output;
   std::string verdicts;
-  bool keep_ambiguous = false;
+  bool drop_ambiguous = false;
   std::string positions;          // of the vertices, a file
   std::optional<int> neighbours;  // of a point, where the input is a cloud
   std::optional<double> radius;   // in the unit of the cloud
@@ -46,7 +46,7 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
     const auto file = read_input(context);
     for (const auto& diagnostic : file.report.diagnostics) warn(flags, to_string(diagnostic));
     auto result = judge_edges(file.graph, options, file.points, context);
-    const auto left = apply_verdicts(file.graph, result.verdicts, keep_ambiguous);
+    const auto left = apply_verdicts(file.graph, result.verdicts, !drop_ambiguous);
     if (explain.wanted()) {
       const EdgesRun run{file_title(input), options, file.ids, file.points};
       write_report(explain, graph_report(file.graph, left, result, run, context));
@@ -150,8 +150,8 @@ Verb add_edges(CLI::App& root) {
               {".csv"});
   outputs.add(*verb, "--verdicts", edges->verdicts, "decision and reason an edge, as CSV",
               {".csv"});
-  verb->add_flag("--keep-ambiguous", edges->keep_ambiguous,
-                 "keep edges that are not proven either way, such as bridges");
+  verb->add_flag("--drop-ambiguous", edges->drop_ambiguous,
+                 "leave out edges that are not proven either way, too, such as bridges");
   edges->explain.add_to(*verb, outputs);
   edges->add_flags(*verb);
   return verb_of(verb, edges);

@@ -51,9 +51,11 @@ TEST_F(GraphVerbs, EdgesJoinsPoints) {
   for (int v = 0; v < 5; ++v) text += std::to_string(v) + ",0,1\n";
   write_text(folder / "points.csv", text);
   const auto rows = [&](const std::string& flag) {
-    return run_ok("edges points.csv -o - --keep-ambiguous --method jaccard " + flag);
+    return run_ok("edges points.csv -o - --method jaccard " + flag);
   };
+  // A path is all bridges, which stay unless asked otherwise.
   EXPECT_EQ(rows("--radius 1"), "from,to,weight\n0,1,1\n1,2,1\n2,3,1\n3,4,1\n");
+  EXPECT_EQ(rows("--radius 1 --drop-ambiguous"), "from,to,weight\n");
   EXPECT_THAT(run_ok("edges points.csv --neighbours 2 --verdicts -"), HasSubstr("\n1,0,2,"));
   EXPECT_EQ(run("edges points.csv --radius 1 --neighbours 2").code, 2);
   EXPECT_EQ(run("edges points.csv --radius 0").code, 2);

@@ -27,7 +27,6 @@ struct AnnealedHeat {
   /// Probability that the edge is a true one; 1 for those that are not judged:
   /// bridges, self-loops, and chains that close on themselves.
   std::vector<double> truth;
-  std::vector<bool> bridge;  ///< nothing is known about these
   double false_count = 0.0;  ///< estimated number of false edges, a chain counted once
   /// Edges that score more are to be pruned (`rejection_threshold`); infinite if there are none.
   double threshold = std::numeric_limits<double>::infinity();

@@ -1,131 +1,21 @@
 #include "isotherm/spectral/edges/judge_edges.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <string>
 
 #include "edges/annealed_heat.hpp"
 #include "edges/control_pairs.hpp"
 #include "edges/pair_ranks.hpp"
+#include "edges/pair_scores.hpp"
 #include "edges/two_groups.hpp"
+#include "graph/bridges.hpp"
+#include "graph/simple_graph.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/text_writer.hpp"
-#include "isotherm/spectral/heat/heat_affinity.hpp"
-#include "isotherm/spectral/resistance/effective_resistance.hpp"
 
 namespace isotherm::spectral {
 namespace {
-
-constexpr double kUnknown = std::numeric_limits<double>::infinity();
-
-// Ascending, each once, without the vertex itself.
-std::vector<Index> sorted_neighbours(const WeightedGraph& graph, Index vertex) {
-  std::vector<Index> found;
-  for (const auto& neighbour : graph.neighbours(vertex)) {
-    if (neighbour.vertex != vertex) found.push_back(neighbour.vertex);
-  }
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
-  return found;
-}
-
-struct NeighbourCounts {
-  std::size_t common = 0;
-  std::size_t all = 0;
-};
-
-// Of the two ends of an edge, which do not count themselves. The shorter list is looked up
-// in the longer one, so that a hub costs little more than its neighbours.
-NeighbourCounts count_neighbours(const std::vector<Index>& first, const std::vector<Index>& second,
-                                 bool self_loop) {
-  const bool swapped = second.size() < first.size();
-  const auto& shorter = swapped ? second : first;
-  const auto& longer = swapped ? first : second;
-  const auto common = static_cast<std::size_t>(std::ranges::count_if(
-      shorter, [&](Index vertex) { return std::ranges::binary_search(longer, vertex); }));
-  const std::size_t ends = self_loop ? 0 : 2;  // each is in the other's list
-  return {common, first.size() + second.size() - ends - common};
-}
-
-std::vector<NeighbourCounts> count_all_neighbours(const WeightedGraph& graph) {
-  std::vector<std::vector<Index>> neighbours;
-  for (Index v = 0; v < graph.vertex_count(); ++v) {
-    neighbours.push_back(sorted_neighbours(graph, v));
-  }
-  std::vector<NeighbourCounts> counts;
-  for (const auto& [from, to, weight] : graph.edges()) {
-    counts.push_back(count_neighbours(neighbours[from], neighbours[to], from == to));
-  }
-  return counts;
-}
-
-double jaccard_index(const NeighbourCounts& counts) {
-  if (counts.all == 0) return -1.0;
-  return static_cast<double>(counts.common) / static_cast<double>(counts.all);
-}
-
-std::vector<double> affinity_scores(const WeightedGraph& graph, const JudgeEdgesOptions& options,
-                                    const RunContext& run) {
-  // Affinities that the tolerance cannot tell from 0 speak of a bridge.
-  constexpr double kNoise = 4.0;
-  std::vector<Index> edges(graph.edges().size());
-  std::iota(edges.begin(), edges.end(), 0);
-  const auto affinities = leave_one_out_affinities(
-      graph, edges, std::vector<double>{options.scale},
-      {.tolerance = options.tolerance, .threads = run.threads, .progress = run.progress});
-  std::vector<double> scores;
-  for (const auto& affinity : affinities.values) {
-    const bool measurable = affinity.value > kNoise * affinity.width();
-    scores.push_back(measurable ? 1.0 / affinity.value : kUnknown);
-  }
-  return scores;
-}
-
-std::vector<double> resistance_scores(const WeightedGraph& graph) {
-  auto scores = edge_resistances(graph).values;
-  for (std::size_t e = 0; e < scores.size(); ++e) {
-    scores[e] = leave_one_out_resistance(scores[e], graph.edges()[e].weight);
-  }
-  return scores;
-}
-
-std::vector<double> jaccard_scores(const WeightedGraph& graph) {
-  std::vector<double> scores;
-  for (const auto& counts : count_all_neighbours(graph)) {
-    const double index = jaccard_index(counts);
-    scores.push_back(index < 0.0 ? kUnknown : 1.0 - index);
-  }
-  return scores;
-}
-
-std::vector<double> common_neighbour_scores(const WeightedGraph& graph) {
-  std::vector<double> scores;
-  for (const auto& [common, all] : count_all_neighbours(graph)) {
-    scores.push_back(all == 0 ? kUnknown : 1.0 / (1.0 + static_cast<double>(common)));
-  }
-  return scores;
-}
-
-std::vector<double> scores_of(const WeightedGraph& graph, const JudgeEdgesOptions& options,
-                              const RunContext& run) {
-  switch (options.method) {
-    case EdgeScore::heat:
-    case EdgeScore::rank:
-      break;
-    case EdgeScore::affinity:
-      return affinity_scores(graph, options, run);
-    case EdgeScore::resistance:
-      return resistance_scores(graph);
-    case EdgeScore::jaccard:
-      return jaccard_scores(graph);
-    case EdgeScore::common_neighbours:
-      return common_neighbour_scores(graph);
-  }
-  throw InvalidArgument("method", "is not a method");
-}
 
 EdgeVerdict judge(const WeightedEdge& edge, Index id, double score, double threshold,
                   std::string_view method) {
@@ -139,35 +29,46 @@ EdgeVerdict judge(const WeightedEdge& edge, Index id, double score, double thres
   if (edge.from == edge.to) {
     verdict.score = 0.0;
     verdict.stage = "self-loop";
-  } else if (score == kUnknown) {
+  } else if (score == detail::kUnknownScore) {
     verdict.verdict = Verdict::ambiguous;
-    verdict.stage = "bridge";
+    verdict.stage = "no evidence";
   } else if (score > threshold) {
     verdict.verdict = Verdict::prune;
   }
   return verdict;
 }
 
-JudgeEdgesResult judge_all(const WeightedGraph& graph, const std::vector<double>& scores,
-                           const Threshold& threshold, std::string_view stage) {
+/// What the rest of the graph says of a bridge: that a false edge would close a cycle, if the
+/// graph was in one piece before it.
+void spare_bridge(EdgeVerdict& verdict) {
+  verdict.score = 0.0;
+  verdict.verdict = Verdict::ambiguous;
+  verdict.stage = "bridge";
+}
+
+/// What is known of the edges of a graph before any is measured.
+struct Structure {
+  detail::SimpleGraph simple;
+  std::vector<bool> bridge;  // of the simple graph
+
+  explicit Structure(const WeightedGraph& graph)
+      : simple(detail::merge_parallel_edges(graph)), bridge(detail::find_bridges(simple.graph)) {}
+};
+
+/// Verdicts from the scores of the simple graph's edges.
+JudgeEdgesResult judge_all(const WeightedGraph& graph, const Structure& structure,
+                           const std::vector<double>& scores, const Threshold& threshold,
+                           std::string_view stage) {
   JudgeEdgesResult result;
   result.threshold = threshold;
   for (Index e = 0; e < graph.edge_count(); ++e) {
-    result.verdicts.push_back(judge(graph.edge(e), e, scores[e], threshold.value, stage));
+    const Index edge = structure.simple.merged[e];
+    const bool loop = edge == detail::SimpleGraph::kNone;
+    auto verdict = judge(graph.edge(e), e, loop ? 0.0 : scores[edge], threshold.value, stage);
+    if (!loop && structure.bridge[edge]) spare_bridge(verdict);
+    result.verdicts.push_back(std::move(verdict));
   }
   return result;
-}
-
-JudgeEdgesResult judge_by_threshold(const WeightedGraph& graph, const JudgeEdgesOptions& options,
-                                    const RunContext& run) {
-  const auto scores = scores_of(graph, options, run);
-  std::vector<double> known;
-  for (std::size_t e = 0; e < scores.size(); ++e) {
-    const auto& edge = graph.edges()[e];
-    if (scores[e] != kUnknown && edge.from != edge.to) known.push_back(scores[e]);
-  }
-  const auto threshold = find_threshold(known, {.rule = options.threshold, .konst = options.konst});
-  return judge_all(graph, scores, threshold, enum_name(options.method));
 }
 
 /// A threshold with the mean of |2 p - 1|: how decided the probabilities of the edges are.
@@ -178,23 +79,19 @@ Threshold decided_threshold(double value, const std::vector<double>& truth) {
   return threshold;
 }
 
-JudgeEdgesResult judge_by_heat(const WeightedGraph& graph, const JudgeEdgesOptions& options,
-                               const RunContext& run) {
-  auto heat = detail::anneal_heat(graph, {.rounds = options.rounds,
-                                          .chance = options.chance,
-                                          .control = options.control,
-                                          .seed = run.seed,
-                                          .threads = run.threads,
-                                          .progress = run.progress});
-  std::vector<double> judged;
-  for (std::size_t e = 0; e < heat.scores.size(); ++e) {
-    const auto& edge = graph.edges()[e];
-    if (heat.bridge[e]) heat.scores[e] = kUnknown;
-    if (!heat.bridge[e] && edge.from != edge.to) judged.push_back(heat.truth[e]);
-  }
+JudgeEdgesResult judge_by_heat(const WeightedGraph& graph, const Structure& structure,
+                               const JudgeEdgesOptions& options, const RunContext& run) {
+  const auto& edges = structure.simple.graph;
+  const auto heat = detail::anneal_heat(edges, {.rounds = options.rounds,
+                                                .chance = options.chance,
+                                                .control = options.control,
+                                                .seed = run.seed,
+                                                .threads = run.threads,
+                                                .progress = run.progress});
   const std::string stage = "heat scale " + format_number(heat.scale) + " steps " +
                             std::to_string(heat.horizon) + (heat.in_plane ? " crossings" : "");
-  return judge_all(graph, heat.scores, decided_threshold(heat.threshold, judged), stage);
+  return judge_all(graph, structure, heat.scores, decided_threshold(heat.threshold, heat.truth),
+                   stage);
 }
 
 void check_positions(const WeightedGraph& graph, const Eigen::MatrixXd& positions) {
@@ -204,29 +101,68 @@ void check_positions(const WeightedGraph& graph, const Eigen::MatrixXd& position
   if (!positions.allFinite()) throw InvalidArgument("positions", "must be finite");
 }
 
-JudgeEdgesResult judge_by_rank(const WeightedGraph& graph, const JudgeEdgesOptions& options,
-                               const Eigen::MatrixXd& positions, const RunContext& run) {
-  check_positions(graph, positions);
-  const auto ranks_of = [&](const std::vector<VertexPair>& pairs) {
-    return detail::pair_ranks(positions, pairs, run.threads, run.progress);
+detail::PairScores ranks(const WeightedGraph& graph, const std::vector<VertexPair>& pairs,
+                         const Eigen::MatrixXd& positions, const RunContext& run) {
+  const auto of = [&](const std::vector<VertexPair>& ends) {
+    return detail::pair_ranks(positions, ends, run.threads, run.progress);
   };
-  const auto scores = ranks_of(edge_pairs(graph));
-  const auto nulls = ranks_of(detail::control_pairs(graph, options.control, run.seed));
-  const auto groups = detail::separate_groups(scores, nulls);
-  const double threshold = detail::rejection_threshold(scores, groups, options.chance);
-  return judge_all(graph, scores, decided_threshold(threshold, groups.truth),
-                   enum_name(options.method));
+  return {of(edge_pairs(graph)), of(pairs)};
+}
+
+/// Scores of what may be false: neither bridges nor edges about which nothing is known.
+std::vector<double> scores_in_question(const std::vector<double>& scores,
+                                       const std::vector<bool>& bridge) {
+  std::vector<double> known;
+  for (std::size_t e = 0; e < scores.size(); ++e) {
+    if (!bridge[e] && std::isfinite(scores[e])) known.push_back(scores[e]);
+  }
+  return known;
+}
+
+Threshold threshold_by_control(const std::vector<double>& scores, std::vector<double> pairs,
+                               double chance) {
+  constexpr double kMostFalse = 0.4;  // one round cannot tell more from a poor score
+  std::erase_if(pairs, [](double score) { return !std::isfinite(score); });
+  const auto groups = detail::separate_groups(scores, pairs, kMostFalse);
+  return decided_threshold(detail::rejection_threshold(scores, groups, chance), groups.truth);
+}
+
+ThresholdRule rule_of(EdgeThreshold threshold) {
+  switch (threshold) {
+    case EdgeThreshold::control:
+      break;
+    case EdgeThreshold::mean_sigma:
+      return ThresholdRule::mean_sigma;
+    case EdgeThreshold::otsu:
+      return ThresholdRule::otsu;
+    case EdgeThreshold::mixture:
+      return ThresholdRule::mixture;
+    case EdgeThreshold::gap:
+      return ThresholdRule::gap;
+  }
+  throw InvalidArgument("threshold", "is not a rule of scores alone");
+}
+
+JudgeEdgesResult judge_by_scores(const WeightedGraph& graph, const Structure& structure,
+                                 const JudgeEdgesOptions& options, const Eigen::MatrixXd& positions,
+                                 const RunContext& run) {
+  const auto& edges = structure.simple.graph;
+  const bool by_rank = options.method == EdgeScore::rank;
+  if (by_rank) check_positions(graph, positions);
+  const auto pairs = detail::control_pairs(edges, options.control, run.seed);
+  const auto scores = by_rank ? ranks(edges, pairs, positions, run)
+                              : detail::score_pairs(edges, pairs, options, run);
+  const auto questioned = scores_in_question(scores.edges, structure.bridge);
+  const bool control = by_rank || options.threshold == EdgeThreshold::control;
+  const auto threshold = control ? threshold_by_control(questioned, scores.pairs, options.chance)
+                                 : find_threshold(questioned, {.rule = rule_of(options.threshold),
+                                                               .konst = options.konst});
+  return judge_all(graph, structure, scores.edges, threshold, enum_name(options.method));
 }
 
 }  // namespace
 
 void JudgeEdgesOptions::validate() const { require_fields_in_range(*this); }
-
-double jaccard_index(const WeightedGraph& graph, Index edge) {
-  const auto [from, to, weight] = graph.edge(edge);
-  return jaccard_index(
-      count_neighbours(sorted_neighbours(graph, from), sorted_neighbours(graph, to), from == to));
-}
 
 WeightedGraph apply_verdicts(const WeightedGraph& graph, const EdgeVerdicts& verdicts,
                              bool keep_ambiguous) {
@@ -240,9 +176,10 @@ JudgeEdgesResult judge_edges(const WeightedGraph& graph, const JudgeEdgesOptions
   options.validate();
   if (run.threads < 0) throw InvalidArgument("threads", "must not be negative");
   const auto start = std::chrono::steady_clock::now();
-  auto result = options.method == EdgeScore::heat   ? judge_by_heat(graph, options, run)
-                : options.method == EdgeScore::rank ? judge_by_rank(graph, options, positions, run)
-                                                    : judge_by_threshold(graph, options, run);
+  const Structure structure(graph);
+  auto result = options.method == EdgeScore::heat
+                    ? judge_by_heat(graph, structure, options, run)
+                    : judge_by_scores(graph, structure, options, positions, run);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

@@ -19,20 +19,22 @@ double count_from(const std::vector<double>& sorted, double value) {
   return static_cast<double>(sorted.end() - std::lower_bound(sorted.begin(), sorted.end(), value));
 }
 
-/// Above a quantile of the null scores there are few true ones: what is found there
-/// says how many false ones there are. The least of several quantiles, each with one
-/// standard deviation of its count on top.
-double estimate_false(const std::vector<double>& scores, const std::vector<double>& null_scores) {
-  constexpr std::array kQuantiles = {0.2, 0.3, 0.4, 0.5, 0.6};
+/// Above a quantile of the null scores there are few true ones: what is found there says how
+/// many false ones there are: the least of several quantiles, each with half a standard deviation
+/// of its count on top; with two of them above high quantiles, where few are found.
+double estimate_false(const std::vector<double>& scores, const std::vector<double>& null_scores,
+                      double most_false) {
+  constexpr std::array kQuantiles = {0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95};
+  constexpr double kHigh = 0.65;
   const auto null_count = static_cast<double>(null_scores.size());
   auto least = static_cast<double>(scores.size());
   for (const double quantile : kQuantiles) {
     const double from = null_scores[static_cast<std::size_t>(quantile * (null_count - 1.0))];
     const double found = count_from(scores, from);
-    least =
-        std::min(least, (found + std::sqrt(found)) * null_count / count_from(null_scores, from));
+    const double margin = quantile > kHigh ? 2.0 * std::sqrt(found + 1.0) : 0.5 * std::sqrt(found);
+    least = std::min(least, (found + margin) * null_count / count_from(null_scores, from));
   }
-  return least;
+  return least > most_false * static_cast<double>(scores.size()) ? 0.0 : least;
 }
 
 /// Scores that share one value of the regression.
@@ -70,13 +72,14 @@ std::vector<Block> regress(const std::vector<double>& scores,
 
 }  // namespace
 
-TwoGroups separate_groups(std::span<const double> scores, std::span<const double> null_scores) {
+TwoGroups separate_groups(std::span<const double> scores, std::span<const double> null_scores,
+                          double most_false) {
   TwoGroups groups;
   groups.truth.assign(scores.size(), 1.0);
   if (scores.empty() || null_scores.empty()) return groups;
   const auto sorted = sorted_copy(scores);
   const auto sorted_null = sorted_copy(null_scores);
-  groups.false_count = estimate_false(sorted, sorted_null);
+  groups.false_count = estimate_false(sorted, sorted_null, most_false);
   if (groups.false_count == 0.0) return groups;
   const auto blocks = regress(sorted, sorted_null, groups.false_count);
   for (std::size_t k = 0; k < scores.size(); ++k) {

@@ -20,8 +20,11 @@ struct TwoGroups {
 /// local false discovery rate (Efron et al. 2001) is a ratio of two densities, of
 /// which neither is modelled: it is found by isotonic regression of group on score,
 /// and so the probability never rises with the score. Without null scores, all are
-/// true. O(q log q) for q scores of both kinds.
-TwoGroups separate_groups(std::span<const double> scores, std::span<const double> null_scores);
+/// true. So they are where more than a share `most_false` of them would be false: scores that
+/// find no difference between edges and other pairs say nothing. O(q log q) for q scores of both
+/// kinds.
+TwoGroups separate_groups(std::span<const double> scores, std::span<const double> null_scores,
+                          double most_false = 1.0);
 
 /// Places of scores, from the largest on.
 std::vector<Index> by_suspicion(std::span<const double> scores);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -14,6 +15,10 @@ namespace {
 
 using namespace isotherm_test;
 
+constexpr std::array kAllMethods = {
+    EdgeScore::heat,    EdgeScore::affinity,          EdgeScore::resistance,
+    EdgeScore::jaccard, EdgeScore::common_neighbours, EdgeScore::rank};
+// Those that need no positions.
 constexpr std::array kMethods = {EdgeScore::heat, EdgeScore::affinity, EdgeScore::resistance,
                                  EdgeScore::jaccard, EdgeScore::common_neighbours};
 
@@ -228,23 +233,23 @@ TEST(JudgeEdges, RankTakesDegenerateInputAndNeedsPositions) {
   EXPECT_EQ(judge_edges(complete_graph(5), rank, heap.leftCols(5)).verdicts.size(), 10);
   EXPECT_TRUE(judge_edges(WeightedGraph(), rank, Eigen::MatrixXd(2, 0)).verdicts.empty());
   const auto pair = judge_edges({2, {{0, 1, 1.0}, {1, 1, 1.0}}}, rank, heap.leftCols(2)).verdicts;
-  EXPECT_EQ(pair[0].verdict, Verdict::keep);
+  EXPECT_EQ(pair[0].stage, "bridge");
   EXPECT_EQ(pair[1].stage, "self-loop");
   EXPECT_THROW(judge_edges(graph, rank), InvalidArgument);
   EXPECT_THROW(judge_edges(graph, rank, heap.leftCols(35)), InvalidArgument);
   EXPECT_THROW(judge_edges(graph, rank, heap.array() / 0.0), InvalidArgument);
 }
 
-TEST(ApplyVerdicts, LeavesOutPrunedAndByDefaultAmbiguousEdges) {
+TEST(ApplyVerdicts, LeavesOutPrunedAndIfAskedAmbiguousEdges) {
   const WeightedGraph graph(3, {{0, 1, 1.0}, {1, 2, 2.0}, {2, 0, 3.0}});
   EdgeVerdicts verdicts(3);
   verdicts[0].verdict = Verdict::prune;
   verdicts[2].verdict = Verdict::ambiguous;
-  const auto kept = apply_verdicts(graph, verdicts);
+  const auto kept = apply_verdicts(graph, verdicts, false);
   ASSERT_EQ(kept.edge_count(), 1);
   EXPECT_EQ(kept.edge(0).weight, 2.0);
   EXPECT_EQ(kept.vertex_count(), 3);
-  EXPECT_EQ(apply_verdicts(graph, verdicts, true).edge_count(), 2);
+  EXPECT_EQ(apply_verdicts(graph, verdicts).edge_count(), 2);
   verdicts.pop_back();
   EXPECT_THROW(apply_verdicts(graph, verdicts), InvalidArgument);
 }
@@ -252,18 +257,111 @@ TEST(ApplyVerdicts, LeavesOutPrunedAndByDefaultAmbiguousEdges) {
 TEST(JudgeEdges, BridgesAreAmbiguousAndSelfLoopsKept) {
   const WeightedGraph graph(
       7, {{0, 1, 1.0}, {1, 2, 1.0}, {2, 0, 1.0}, {2, 3, 1.0}, {4, 4, 1.0}, {5, 6, 2.0}});
-  for (const auto method : kMethods) {
+  const Eigen::MatrixXd positions = Eigen::MatrixXd::Zero(2, 7);
+  for (const auto method : kAllMethods) {
     const JudgeEdgesOptions options = {
-        .method = method, .threshold = ThresholdRule::mean_sigma, .konst = 3.0};
-    const auto verdicts = judge_edges(graph, options).verdicts;
+        .method = method, .threshold = EdgeThreshold::mean_sigma, .konst = 3.0};
+    const auto verdicts = judge_edges(graph, options, positions).verdicts;
     EXPECT_EQ(verdicts[0].verdict, Verdict::keep) << enum_name(method);
     EXPECT_EQ(verdicts[4].stage, "self-loop");
     EXPECT_EQ(verdicts[4].verdict, Verdict::keep);
+    EXPECT_EQ(verdicts[3].stage, "bridge") << enum_name(method);
     EXPECT_EQ(verdicts[5].verdict, Verdict::ambiguous) << enum_name(method);
   }
-  for (const auto method : {EdgeScore::heat, EdgeScore::affinity, EdgeScore::resistance}) {
-    EXPECT_EQ(judge_edges(graph, {.method = method}).verdicts[3].stage, "bridge");
+}
+
+TEST(JudgeEdges, TheGraphSaysWhatABridgeIsWhateverTheWeights) {
+  // Two complete graphs joined by one edge, which is given in both directions, or in one.
+  for (const double weight : {1e-14, 1e-6, 1.0, 1e6, 1e14}) {
+    const auto both = disjoint_union(complete_graph(10), complete_graph(10));
+    std::vector<WeightedEdge> edges(both.edges().begin(), both.edges().end());
+    edges.push_back({0, 10, weight});
+    for (const auto method : kMethods) {
+      const auto once = judge_edges({20, edges}, {.method = method}).verdicts;
+      auto twice_edges = edges;
+      twice_edges.push_back({10, 0, weight});
+      const auto twice = judge_edges({20, twice_edges}, {.method = method}).verdicts;
+      for (Index e = 0; e < both.edge_count(); ++e) {
+        EXPECT_EQ(once[e].verdict, Verdict::keep) << enum_name(method) << ' ' << weight;
+      }
+      EXPECT_EQ(once.back().stage, "bridge") << enum_name(method) << ' ' << weight;
+      EXPECT_EQ(twice[90].stage, "bridge");
+      EXPECT_EQ(twice[91].stage, "bridge");
+    }
   }
+}
+
+TEST(JudgeEdges, NoEdgeOfACycleIsABridge) {
+  for (const double scale : {0.01, 1.0, 100.0, 1e6}) {
+    const auto verdicts =
+        judge_edges(ring_graph(60), {.method = EdgeScore::affinity, .scale = scale}).verdicts;
+    for (const auto& verdict : verdicts) {
+      EXPECT_EQ(verdict.verdict, Verdict::keep) << scale;
+      EXPECT_TRUE(std::isfinite(verdict.score));
+    }
+  }
+}
+
+TEST(JudgeEdges, EveryMethodLeavesCleanGraphsWhole) {
+  Random random(88);
+  const auto tree = random_tree(60, random);
+  const auto sheet = with_false_edges(500, 0.09, 0, random);
+  for (const auto method : kMethods) {
+    // Resistance takes edges of vertices with few others for false ones.
+    const bool rough = method == EdgeScore::resistance;
+    const auto grid = rough ? ring_graph(12) : grid_graph(20, 20);
+    for (const auto& graph : {path_graph(51), tree, ring_graph(40), grid}) {
+      const auto verdicts = judge_edges(graph, {.method = method}).verdicts;
+      EXPECT_EQ(apply_verdicts(graph, verdicts).edge_count(), graph.edge_count())
+          << enum_name(method);
+    }
+    const auto verdicts = judge_edges(sheet, {.method = method}).verdicts;
+    const Index most = rough ? 40 : 200;
+    EXPECT_LE(count(verdicts, Verdict::prune), sheet.edge_count() / most) << enum_name(method);
+  }
+}
+
+/// Points on a sheet, joined to their nearest neighbours; its layers, rolled up, are `layer` of
+/// its length from each other, and short circuits join points that lie one above the other.
+WeightedGraph rolled_sheet(Index count, Index short_circuits, Random& random) {
+  constexpr double kLength = 10.0, kLayer = 2.5;
+  constexpr Index kNeighbours = 7;
+  std::vector<std::pair<double, double>> points(count);
+  for (auto& point : points) point = {kLength * random.uniform(), random.uniform()};
+  const auto nearest = [&](double x, double y, Index howmany) {
+    std::vector<std::pair<double, Index>> found;
+    for (Index v = 0; v < count; ++v) {
+      found.emplace_back(std::hypot(points[v].first - x, points[v].second - y), v);
+    }
+    std::partial_sort(found.begin(), found.begin() + howmany, found.end());
+    found.resize(howmany);
+    return found;
+  };
+  std::vector<WeightedEdge> edges;
+  std::set<std::pair<Index, Index>> known;
+  const auto join = [&](Index from, Index to) {
+    if (from != to && known.insert(std::minmax(from, to)).second) edges.push_back({from, to, 1.0});
+  };
+  for (Index v = 0; v < count; ++v) {
+    const auto [x, y] = points[v];
+    for (const auto& [distance, other] : nearest(x, y, kNeighbours + 1)) join(v, other);
+  }
+  for (const auto end = edges.size() + short_circuits; edges.size() < end;) {
+    const Index from = random_vertex(random, count);
+    const auto [x, y] = points[from];
+    if (x + kLayer < kLength) join(from, nearest(x + kLayer, y, 1).front().second);
+  }
+  return {count, std::move(edges)};
+}
+
+TEST(JudgeEdges, HeatFindsShortCircuitsOfARolledSheetByDefault) {
+  Random random(89);
+  constexpr Index kShort = 50;
+  const auto graph = rolled_sheet(1500, kShort, random);
+  const auto [pruned, left] = heat_errors(graph, kShort);
+  EXPECT_LT(pruned, 0.003);
+  EXPECT_LT(left, 0.1);
+  EXPECT_LE(heat_errors(rolled_sheet(1500, 0, random), 0).first, 0.001);
 }
 
 TEST(JudgeEdges, JaccardIndexByHand) {

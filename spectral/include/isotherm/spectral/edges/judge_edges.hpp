@@ -46,23 +46,41 @@ constexpr std::array<EnumName<ControlGroup>, 2> enum_names(ControlGroup) {
   return {{{ControlGroup::anywhere, "anywhere"}, {ControlGroup::near, "near"}}};
 }
 
+/// Where scores part true edges from false ones.
+enum class EdgeThreshold {
+  control,     ///< where an edge is more likely one of the control group than a true one
+  mean_sigma,  ///< the others as ThresholdRule has them
+  otsu,
+  mixture,
+  gap,
+};
+
+constexpr std::array<EnumName<EdgeThreshold>, 5> enum_names(EdgeThreshold) {
+  return {{{EdgeThreshold::control, "control"},
+           {EdgeThreshold::mean_sigma, "mean-sigma"},
+           {EdgeThreshold::otsu, "otsu"},
+           {EdgeThreshold::mixture, "mixture"},
+           {EdgeThreshold::gap, "gap"}}};
+}
+
 struct JudgeEdgesOptions {
   EdgeScore method = EdgeScore::heat;
   /// Heat: how often the edges are judged, each time in the graph weighted by the
   /// judgement before and at twice the scale; in [1, 10].
   int rounds = 3;
-  /// Heat, rank: the pairs that edges are compared with. `near` finds short circuits that run
+  /// The pairs that edges are compared with. `near` finds short circuits that run
   /// side by side, at the price of a few more true edges.
   ControlGroup control = ControlGroup::anywhere;
-  /// Heat, rank: an edge is pruned where it is less likely than this to be a true one, but no
-  /// more edges are than there are false ones by the estimate; in (0, 1). Less prunes less;
-  /// with 0.7 precision and recall are about equal on Swiss rolls.
+  /// An edge is pruned where it is less likely than this to be a true one, but no more edges are
+  /// than there are false ones by the estimate; in (0, 1). Less prunes less; with 0.7 precision
+  /// and recall are about equal on Swiss rolls.
   double chance = 0.7;
   /// Affinity: diffusion time t of exp(-tL), in units of 1 / weight; finite, > 0.
   /// About one over the weight of a typical edge looks a few hops far.
   double scale = 1.0;
-  /// How the threshold is found from the scores, for all methods but heat and rank.
-  ThresholdRule threshold = ThresholdRule::mixture;
+  /// How the threshold is found from the scores, for all methods but heat and rank, which compare
+  /// with the control group always.
+  EdgeThreshold threshold = EdgeThreshold::control;
   /// Standard deviations above the mean, for the mean-sigma rule; finite.
   double konst = 1.0;
   double tolerance = 1e-9;  ///< affinity: of the heat kernel's entries, absolute, > 0
@@ -76,10 +94,10 @@ requires std::same_as<std::remove_const_t<Options>, JudgeEdgesOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("method", options.method, "what an edge is judged by");
   visit("rounds", options.rounds, "heat: how often edges are judged", closed(1, 10));
-  visit("control", options.control, "heat, rank: pairs that false edges resemble");
-  visit("chance", options.chance, "heat, rank: prune what is less likely true", open(0, 1));
+  visit("control", options.control, "pairs that false edges resemble");
+  visit("chance", options.chance, "prune what is less likely true", open(0, 1));
   visit("scale", options.scale, "affinity: diffusion time", left_open(0, 1e12));
-  visit("threshold", options.threshold, "other methods: rule that splits the scores");
+  visit("threshold", options.threshold, "but for heat, rank: what scores are compared with");
   visit("konst", options.konst, "deviations above the mean, for mean-sigma", closed(-1e6, 1e6));
   visit("tolerance", options.tolerance, "affinity: error allowed in the heat kernel",
         left_open(0, 1));
@@ -87,40 +105,45 @@ void visit_fields(Options& options, Visitor&& visit) {
 
 struct JudgeEdgesResult {
   EdgeVerdicts verdicts;  ///< one an edge, in order of id; vertices by position
-  Threshold threshold;    ///< for heat and rank, its separation is the mean of |2 p - 1|
+  Threshold threshold;    ///< by control, its separation is the mean of |2 p - 1|
   double seconds = 0.0;
 };
 
-/// A verdict for every edge. Edges about which the rest of the graph says
-/// nothing (bridges, whose score would be infinite; for jaccard and common
-/// neighbours, edges without any neighbour) are ambiguous, self-loops are kept.
+/// A verdict for every edge. Bridges are ambiguous by every method, score 0 and stage "bridge":
+/// the graph itself says which they are, whatever the weights. So are edges about which nothing
+/// is known (stage "no evidence"). Self-loops are kept. Parallel edges are judged as one.
+///
+/// The threshold is where an edge is less likely than `chance` to be a true one: one minus the
+/// local false discovery rate of its score against pairs of vertices that no edge joins, the
+/// control group (docs/concepts/edge-affinity.md).
 ///
 /// Heat scores an edge by -log of the heat affinity of its ends in the normalised
 /// graph without it, from walks of a few steps, and takes as the probability p that the
 /// edge is a true one its local false discovery rate against random pairs of vertices;
 /// edges are then judged again in the graph weighted by p. Where no walk joins the
-/// ends, the score is 1000 plus that of the round before. Where the graph is nearly planar and has
-/// up to some ten thousand edges, a last judgement goes by what each edge crosses. Parallel
-/// edges are judged as one, and so is a chain of edges through vertices of degree two, of
-/// which one at most is taken to be false. Time n times the edges within a few steps of a
-/// vertex; the other methods' costs are those of their functions.
+/// ends, the score is 1000 plus that of the round before. The rounds are repeated with the most
+/// suspicious edges left out of the second; that answer counts if it finds so many more false
+/// edges that chance does not explain it, as among short circuits side by side. Where the graph is
+/// nearly planar and has up to some ten thousand edges, a last judgement goes by what each edge
+/// crosses. A chain of edges through vertices of degree two is judged as one, of which one at most
+/// is taken to be false. Time n times the edges within a few steps of a vertex; the other methods'
+/// costs are those of their functions.
 ///
 /// Rank is for vertices of known `positions` (dimension x vertices), which the other methods do not
 /// use. It scores an edge by how many vertices are nearer to one of its ends than the other end is,
 /// counted from the end that has fewer of them: where vertices are sparse true edges are long, but
-/// do not reach past many. The probability is found as for heat, in one round; bridges and
-/// chains are judged like other edges. O(edges sqrt n) in the plane.
+/// do not reach past many. Chains are judged like other edges. O(edges sqrt n) in the plane.
 ///
-/// The seed is that of the random pairs of heat and rank.
+/// The seed is that of the random pairs.
 /// @throws InvalidArgument, also for rank unless there is a finite position for each vertex;
 ///   NumericalError, Cancelled
 JudgeEdgesResult judge_edges(const WeightedGraph& graph, const JudgeEdgesOptions& options = {},
                              const Eigen::MatrixXd& positions = {}, const RunContext& run = {});
 
-/// The graph without the edges that are pruned, nor, unless `keep_ambiguous`, those that are
-/// ambiguous. @throws InvalidArgument unless there is one verdict an edge, in order of id
+/// The graph without the edges that are pruned and, unless `keep_ambiguous`, without those that
+/// are ambiguous. @throws InvalidArgument unless there is one verdict an edge, in order of id
 WeightedGraph apply_verdicts(const WeightedGraph& graph, const EdgeVerdicts& verdicts,
-                             bool keep_ambiguous = false);
+                             bool keep_ambiguous = true);
 
 /// Jaccard index of the neighbourhoods of an edge's ends, the ends themselves
 /// left out: in [0, 1]; -1 if neither has any other neighbour. Ordered ends and

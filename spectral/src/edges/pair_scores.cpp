@@ -1,0 +1,150 @@
+#include "edges/pair_scores.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "edges/thin_out.hpp"
+#include "isotherm/base/error.hpp"
+#include "isotherm/spectral/heat/heat_affinity.hpp"
+#include "isotherm/spectral/resistance/effective_resistance.hpp"
+#include "isotherm/spectral/sparse/laplacian_solver.hpp"
+
+namespace isotherm::spectral {
+namespace {
+
+using detail::kUnknownScore;
+using detail::PairScores;
+
+// Ascending, each once, without the vertex itself.
+std::vector<Index> sorted_neighbours(const WeightedGraph& graph, Index vertex) {
+  std::vector<Index> found;
+  for (const auto& neighbour : graph.neighbours(vertex)) {
+    if (neighbour.vertex != vertex) found.push_back(neighbour.vertex);
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+struct NeighbourCounts {
+  std::size_t common = 0;
+  std::size_t all = 0;
+};
+
+// Of two ends, which do not count themselves. The shorter list is looked up in the longer one,
+// so that a hub costs little more than its neighbours.
+NeighbourCounts count_neighbours(const std::vector<Index>& first, const std::vector<Index>& second,
+                                 bool joined) {
+  const bool swapped = second.size() < first.size();
+  const auto& shorter = swapped ? second : first;
+  const auto& longer = swapped ? first : second;
+  const auto common = static_cast<std::size_t>(std::ranges::count_if(
+      shorter, [&](Index vertex) { return std::ranges::binary_search(longer, vertex); }));
+  const std::size_t ends = joined ? 2 : 0;  // each is in the other's list
+  return {common, first.size() + second.size() - ends - common};
+}
+
+double jaccard_index(const NeighbourCounts& counts) {
+  if (counts.all == 0) return -1.0;
+  return static_cast<double>(counts.common) / static_cast<double>(counts.all);
+}
+
+double neighbour_score(const NeighbourCounts& counts, EdgeScore method) {
+  if (counts.all == 0) return kUnknownScore;
+  if (method == EdgeScore::jaccard) return 1.0 - jaccard_index(counts);
+  return 1.0 / (1.0 + static_cast<double>(counts.common));
+}
+
+PairScores neighbour_scores(const WeightedGraph& graph, const std::vector<VertexPair>& pairs,
+                            EdgeScore method) {
+  std::vector<std::vector<Index>> neighbours;
+  for (Index v = 0; v < graph.vertex_count(); ++v) {
+    neighbours.push_back(sorted_neighbours(graph, v));
+  }
+  const auto score = [&](Index from, Index to, bool joined) {
+    return neighbour_score(count_neighbours(neighbours[from], neighbours[to], joined), method);
+  };
+  PairScores scores;
+  for (const auto& [from, to, weight] : graph.edges())
+    scores.edges.push_back(score(from, to, true));
+  for (const auto& [from, to] : pairs) scores.pairs.push_back(score(from, to, false));
+  return scores;
+}
+
+std::vector<double> affinity_scores(const std::vector<CertifiedValue>& affinities) {
+  // Of an affinity that the tolerance cannot tell from 0, the upper bound is known.
+  constexpr double kNoise = 4.0;
+  std::vector<double> scores;
+  for (const auto& affinity : affinities) {
+    const bool measurable = affinity.value > kNoise * affinity.width();
+    scores.push_back(1.0 / (measurable ? affinity.value : affinity.upper));
+  }
+  return scores;
+}
+
+PairScores affinity_scores(const WeightedGraph& graph, const std::vector<VertexPair>& pairs,
+                           const JudgeEdgesOptions& options, const RunContext& run) {
+  std::vector<Index> edges(graph.edges().size());
+  std::iota(edges.begin(), edges.end(), 0);
+  const std::vector<double> scales = {options.scale};
+  const HeatDistanceOptions heat = {
+      .tolerance = options.tolerance, .threads = run.threads, .progress = run.progress};
+  return {affinity_scores(leave_one_out_affinities(graph, edges, scales, heat).values),
+          affinity_scores(heat_affinities(graph, detail::thin_out(pairs), scales, heat).values)};
+}
+
+PairScores resistance_scores(const WeightedGraph& graph, const std::vector<VertexPair>& pairs,
+                             const RunContext& run) {
+  constexpr std::size_t kMostSolves = 1000;
+  PairScores scores;
+  scores.edges = edge_resistances(graph).values;
+  for (std::size_t e = 0; e < scores.edges.size(); ++e) {
+    scores.edges[e] = leave_one_out_resistance(scores.edges[e], graph.edges()[e].weight);
+  }
+  LaplacianSolver solver{Laplacian(graph)};
+  const auto component = connected_components(graph).label;
+  Eigen::VectorXd current = Eigen::VectorXd::Zero(graph.vertex_count());
+  for (const auto& [from, to] : detail::thin_out(pairs, kMostSolves)) {
+    if (component[from] != component[to]) continue;
+    if (run.progress && !run.progress({"resistances", scores.pairs.size(), kMostSolves})) {
+      throw Cancelled();
+    }
+    current[from] = 1.0;
+    current[to] = -1.0;
+    const Eigen::VectorXd potential = solver.solve(current);
+    scores.pairs.push_back(potential[from] - potential[to]);
+    current[from] = current[to] = 0.0;
+  }
+  return scores;
+}
+
+}  // namespace
+
+double jaccard_index(const WeightedGraph& graph, Index edge) {
+  const auto [from, to, weight] = graph.edge(edge);
+  return jaccard_index(
+      count_neighbours(sorted_neighbours(graph, from), sorted_neighbours(graph, to), from != to));
+}
+
+namespace detail {
+
+PairScores score_pairs(const WeightedGraph& graph, const std::vector<VertexPair>& pairs,
+                       const JudgeEdgesOptions& options, const RunContext& run) {
+  switch (options.method) {
+    case EdgeScore::heat:
+    case EdgeScore::rank:
+      break;
+    case EdgeScore::affinity:
+      return affinity_scores(graph, pairs, options, run);
+    case EdgeScore::resistance:
+      return resistance_scores(graph, pairs, run);
+    case EdgeScore::jaccard:
+    case EdgeScore::common_neighbours:
+      return neighbour_scores(graph, pairs, options.method);
+  }
+  throw InvalidArgument("method", "is not a method of pairs");
+}
+
+}  // namespace detail
+}  // namespace isotherm::spectral
