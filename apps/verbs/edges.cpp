@@ -2,6 +2,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +33,7 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
   std::string verdicts;
   bool drop_ambiguous = false;
   std::string positions;          // of the vertices, a file
+  std::string trusted;            // edges, a file
   std::optional<int> neighbours;  // of a point, where the input is a cloud
   std::optional<double> radius;   // in the unit of the cloud
   ReportFlags explain;
@@ -45,6 +47,7 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
     const RunContext context{flags.threads, progress_line(flags), flags.seed};
     const auto file = read_input(context);
     for (const auto& diagnostic : file.report.diagnostics) warn(flags, to_string(diagnostic));
+    if (!trusted.empty()) options.trusted = trusted_edges(file);
     auto result = judge_edges(file.graph, options, file.points, context);
     const auto left = apply_verdicts(file.graph, result.verdicts, !drop_ambiguous);
     if (explain.wanted()) {
@@ -75,6 +78,24 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
     file.report = std::move(cloud.report);
     file.points = std::move(cloud.points);
     return file;
+  }
+
+  // Those that the file of trusted edges has, in either direction.
+  std::vector<Index> trusted_edges(const Input& file) const {
+    if (options.method != EdgeScore::heat_multiscale) {
+      throw InvalidArgument("trusted", "only method heat-multiscale knows trusted edges");
+    }
+    const auto known = read_graph(trusted, {.strict = flags.strict});
+    std::set<std::pair<std::uint64_t, std::uint64_t>> ends;
+    for (const auto& edge : known.graph.edges()) {
+      ends.insert(std::minmax(known.ids[edge.from], known.ids[edge.to]));
+    }
+    std::vector<Index> edges;
+    for (Index e = 0; e < file.graph.edge_count(); ++e) {
+      const auto& edge = file.graph.edge(e);
+      if (ends.contains(std::minmax(file.ids[edge.from], file.ids[edge.to]))) edges.push_back(e);
+    }
+    return edges;
   }
 
   // Those of the vertices, from their file, which may have more.
@@ -145,6 +166,9 @@ Verb add_edges(CLI::App& root) {
       ->type_name("FILE")
       ->excludes(neighbours)
       ->excludes(radius);
+  verb->add_option("--trusted", edges->trusted,
+                    "edges (from,to) that are true, for --method heat-multiscale")
+       ->type_name("FILE");
   auto& outputs = edges->flags.outputs;
   outputs.add(*verb, "-o,--output", edges->output, "kept edges to write, as CSV (- for stdout)",
               {".csv"});

@@ -7,6 +7,19 @@ from cells import work_folder
 
 HEAT = ("--method", "heat", "--preset", "datta2016")
 KONST = (0, 1, 2, 3, 4)  # the paper's range
+FIGURE5 = ("--scales", "100,70,10,5,1,0.1,0.001")
+LAP_LINE = ("--init", "lap-line")
+# Scales, largest loop weight and initialisation: what the paper leaves room in.
+READINGS = {
+    ("by the graph", "0.1", "χ²"): (),
+    ("by the graph", "1", "χ²"): ("--loop-weight", 1),
+    ("by the graph", "0.01", "χ²"): ("--loop-weight", 0.01),
+    ("Figure 5's", "0.1", "χ²"): FIGURE5,
+    ("Figure 5's", "1", "χ²"): (*FIGURE5, "--loop-weight", 1),
+    ("by the graph", "0.1", "Lap-line"): LAP_LINE,
+    ("by the graph", "1", "Lap-line"): (*LAP_LINE, "--loop-weight", 1),
+    ("by the graph", "0.1", "none"): ("--init", "uniform"),
+}
 PRUNING = {
     "SC": ("--method", "sc"),
     "RRR": ("--method", "rrr", "--initialization", "odometry", "--no-rrr-split"),  # the paper's
@@ -36,6 +49,13 @@ class Measure:
             work = pathlib.Path(folder)
             return {str(konst): self.pruned(cell, (*HEAT, "--konst", konst), work)["f1"]
                     for konst in KONST}
+
+    def heat_by_reading(self, cell):
+        """F of the paper's method for every reading of what the paper says."""
+        with work_folder() as folder:
+            work = pathlib.Path(folder)
+            return {" ".join(reading): self.pruned(cell, (*HEAT, *flags), work)["f1"]
+                    for reading, flags in READINGS.items()}
 
     def kernel(self, cell, kernel, widths):
         """Trajectory errors of a robust kernel on the graph as it is, a width."""

@@ -3,8 +3,8 @@
 import math
 
 from cells import TYPES
-from methods import (BICOCCA_COLUMNS, CONSENSUS, NOT_THE_PAPERS, PRUNING, bicocca_error,
-                     bicocca_results, mean, with_best_width)
+from methods import (BICOCCA_COLUMNS, CONSENSUS, NOT_THE_PAPERS, PRUNING, READINGS,
+                     bicocca_error, bicocca_results, mean, with_best_width)
 from plan import COMBINED, KITTI, PRINTED_COUNTS
 from printed import TABLE1, TABLE2
 
@@ -12,6 +12,7 @@ STYLE_NAMES = {"paper": "the paper's style", "vertigo": "Vertigo's style",
                "file": "the paper's own files"}
 
 TIE = 1.02  # errors within two per cent are equal
+ROUNDING = 0.005  # of the printed figures
 
 
 def shown(value, digits=2):
@@ -76,6 +77,26 @@ class Page:
                 rows.append([sequence, kind, *(shown(value, 3) for value in values),
                              shown(TABLE1[sequence, kind][2][2])])
         return table(["KITTI", "type", *(f"konst {k}" for k in range(5)), "printed F"], rows)
+
+    def readings_table(self):
+        """Cells of Table I that reach the printed F, and the mean F, a reading and a style."""
+        rows = []
+        for reading in READINGS:
+            row = list(reading)
+            for style in self.extent.styles:
+                found = [(self.reading(style, *cell, " ".join(reading)), TABLE1[cell][2][2])
+                         for cell in ((s, kind) for s in KITTI for kind in TYPES)]
+                reached = sum(value >= printed - ROUNDING for value, printed in found)
+                row += [f"{reached} of {len(found)}", shown(mean([f for f, _ in found]), 3)]
+            rows.append(row)
+        header = ["scales", "loop weight", "initialisation"]
+        for style in self.extent.styles:
+            header += [f"{STYLE_NAMES[style]}: cells", "mean F"]
+        return table(header, rows)
+
+    def reading(self, style, sequence, kind, name):
+        return self.mean_over_seeds(f"table1/{sequence}/{style}/{kind}", "readings",
+                                    lambda result: result[name])
 
     def places_table(self):
         rows = []
@@ -145,7 +166,7 @@ class Page:
         printed = {cell: TABLE1[cell][2][2] for cell in cells}
         return (len(cells), sum(ours[cell] >= printed[cell] for cell in cells),
                 sum(ours[cell] >= 0.99 for cell in cells),
-                sum(heat[cell] >= printed[cell] - 0.005 for cell in cells))
+                sum(heat[cell] >= printed[cell] - ROUNDING for cell in cells))
 
     def table2_wins(self, style, counts):
         """Cells of Table II, and cells where consensus, alone or with a kernel, is the best

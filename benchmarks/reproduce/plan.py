@@ -53,6 +53,7 @@ def kitti_tasks(graphs, measure, extent):
                         tasks[f"{key}/{method}"] = \
                             lambda cell=cell, m=method: measure.pruning(cell(), m)
                     tasks[f"{key}/konst"] = lambda cell=cell: measure.heat_by_konst(cell())
+                    tasks[f"{key}/readings"] = lambda cell=cell: measure.heat_by_reading(cell())
     return tasks
 
 

@@ -149,8 +149,12 @@ class Explainer {
     const auto* own = std::get_if<HeatPruneOptions>(&run_.options.prune);
     const HeatPruneOptions heat = own != nullptr ? *own : HeatPruneOptions{};
     const auto induced = induce(graph_, roles_, heat.induction, context_);
+    auto scales = heat.scales;
+    if (scales.empty()) {
+      for (const auto& round : decisions_.rounds) scales.push_back(round.scale);
+    }
     const SpectralReportOptions options{
-        .scales = heat.scales, .threads = context_.threads, .progress = context_.progress};
+        .scales = std::move(scales), .threads = context_.threads, .progress = context_.progress};
     std::vector<spectral::VertexPair> pairs;
     for (const Index k : roles_.candidates) {
       pairs.push_back({graph_.constraints[k].from, graph_.constraints[k].to});

@@ -14,6 +14,7 @@
 
 #include "isotherm/spectral/edges/edge_verdicts.hpp"
 #include "isotherm/spectral/edges/judge_edges.hpp"
+#include "isotherm/spectral/edges/multiscale_heat.hpp"
 #include "isotherm/spectral/edges/threshold.hpp"
 #include "isotherm/spectral/edges/verdict_file.hpp"
 #include "isotherm/spectral/eigen/eigen_decomposition.hpp"
@@ -24,6 +25,7 @@
 #include "isotherm/spectral/heat/heat_affinity.hpp"
 #include "isotherm/spectral/heat/heat_distance.hpp"
 #include "isotherm/spectral/heat/heat_kernel.hpp"
+#include "isotherm/spectral/heat/heat_scales.hpp"
 #include "isotherm/spectral/resistance/effective_resistance.hpp"
 #include "isotherm/spectral/sparse/block_cholesky.hpp"
 #include "isotherm/spectral/sparse/block_covariance.hpp"

@@ -13,6 +13,7 @@
 #include "graph/simple_graph.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/text_writer.hpp"
+#include "isotherm/spectral/edges/multiscale_heat.hpp"
 
 namespace isotherm::spectral {
 namespace {
@@ -160,9 +161,60 @@ JudgeEdgesResult judge_by_scores(const WeightedGraph& graph, const Structure& st
   return judge_all(graph, structure, scores.edges, threshold, enum_name(options.method));
 }
 
+MultiscaleHeatOptions multiscale_options(const JudgeEdgesOptions& options) {
+  const bool other_rule = options.threshold != EdgeThreshold::control;
+  return {.scales = options.scales,
+          .threshold = other_rule ? rule_of(options.threshold) : ThresholdRule::mean_sigma,
+          .konst = {options.konst},
+          .tolerance = options.tolerance};
+}
+
+/// Edges of the simple graph that are neither bridges nor trusted.
+std::vector<Index> candidates(const Structure& structure, const std::vector<Index>& trusted) {
+  auto out_of_question = structure.bridge;
+  for (const Index edge : trusted) {
+    if (edge < 0 || edge >= static_cast<Index>(structure.simple.merged.size())) {
+      throw InvalidArgument("trusted", "no edge " + std::to_string(edge));
+    }
+    const Index merged = structure.simple.merged[edge];
+    if (merged != detail::SimpleGraph::kNone) out_of_question[merged] = true;
+  }
+  std::vector<Index> edges;
+  for (std::size_t e = 0; e < out_of_question.size(); ++e) {
+    if (!out_of_question[e]) edges.push_back(static_cast<Index>(e));
+  }
+  return edges;
+}
+
+JudgeEdgesResult judge_by_algorithm_1(const WeightedGraph& graph, const Structure& structure,
+                                      const JudgeEdgesOptions& options, const RunContext& run) {
+  const auto judged = candidates(structure, options.trusted);
+  const auto heat =
+      multiscale_heat(structure.simple.graph, judged, multiscale_options(options), run);
+  std::vector<double> scores(structure.bridge.size(), 0.0);
+  std::vector<std::string> stages(structure.bridge.size(), "trusted");
+  std::vector<bool> pruned(structure.bridge.size(), false);
+  for (std::size_t k = 0; k < judged.size(); ++k) {
+    scores[judged[k]] = heat.verdicts[k].score;
+    stages[judged[k]] = heat.verdicts[k].stage;
+    pruned[judged[k]] = heat.verdicts[k].pruned;
+  }
+  auto result = judge_all(graph, structure, scores, {.value = 1.0}, "trusted");
+  for (auto& verdict : result.verdicts) {
+    const Index edge = structure.simple.merged[verdict.edge];
+    if (edge == detail::SimpleGraph::kNone || structure.bridge[edge]) continue;
+    verdict.stage = stages[edge];
+    verdict.verdict = pruned[edge] ? Verdict::prune : Verdict::keep;
+  }
+  return result;
+}
+
 }  // namespace
 
-void JudgeEdgesOptions::validate() const { require_fields_in_range(*this); }
+void JudgeEdgesOptions::validate() const {
+  require_fields_in_range(*this);
+  multiscale_options(*this).validate();
+}
 
 WeightedGraph apply_verdicts(const WeightedGraph& graph, const EdgeVerdicts& verdicts,
                              bool keep_ambiguous) {
@@ -177,8 +229,9 @@ JudgeEdgesResult judge_edges(const WeightedGraph& graph, const JudgeEdgesOptions
   if (run.threads < 0) throw InvalidArgument("threads", "must not be negative");
   const auto start = std::chrono::steady_clock::now();
   const Structure structure(graph);
-  auto result = options.method == EdgeScore::heat
-                    ? judge_by_heat(graph, structure, options, run)
+  auto result = options.method == EdgeScore::heat ? judge_by_heat(graph, structure, options, run)
+                : options.method == EdgeScore::heat_multiscale
+                    ? judge_by_algorithm_1(graph, structure, options, run)
                     : judge_by_scores(graph, structure, options, positions, run);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -133,6 +133,7 @@ PairScores score_pairs(const WeightedGraph& graph, const std::vector<VertexPair>
                        const JudgeEdgesOptions& options, const RunContext& run) {
   switch (options.method) {
     case EdgeScore::heat:
+    case EdgeScore::heat_multiscale:
     case EdgeScore::rank:
       break;
     case EdgeScore::affinity:

@@ -40,6 +40,8 @@ class DenseHeat {
     return (difference.array().square() * (-t * eigen_.eigenvalues().array()).exp()).sum();
   }
 
+  double eigenvalue(Index k) const { return eigen_.eigenvalues()[k]; }
+
  private:
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen_;
 };
@@ -52,13 +54,15 @@ void expect_dense_distances(const PoseGraph<Pose>& graph, HeatPruneOptions optio
   options.tolerance = allowed;
   const auto roles = edge_roles(graph);
   const auto result = heat_prune(graph, roles, options);
-  ASSERT_EQ(result.rounds.size(), options.scales.size());
+  if (!options.scales.empty()) {
+    ASSERT_EQ(result.rounds.size(), options.scales.size());
+  }
   const auto induced = induce(graph, roles, options.induction);
   std::int64_t compared = 0;
   double worst = 0.0;
   std::vector<bool> keep(induced.graph.edges().size(), true);
   std::optional<DenseHeat> dense;
-  for (std::size_t s = 0; s < options.scales.size(); ++s) {
+  for (std::size_t s = 0; s < result.rounds.size(); ++s) {
     if (s == 0 || result.rounds[s - 1].pruned > 0) {
       dense.emplace(spectral::filter_edges(induced.graph, keep));
     }
@@ -66,7 +70,7 @@ void expect_dense_distances(const PoseGraph<Pose>& graph, HeatPruneOptions optio
       const double value = result.distances[s][c];
       if (std::isnan(value)) continue;
       const auto& edge = graph.constraints[roles.candidates[c]];
-      const double expected = dense->distance(edge.from, edge.to, options.scales[s]);
+      const double expected = dense->distance(edge.from, edge.to, result.rounds[s].scale);
       worst = std::max(worst, std::abs(value - expected));
       ++compared;
       const std::string stage = result.verdicts[c].stage;
@@ -130,6 +134,34 @@ TEST(HeatPrune, FollowsAlgorithm1) {
   EXPECT_EQ(left, count(result.verdicts, Verdict::keep));
 }
 
+TEST(HeatPrune, PaperScalesSpanTheSpectrumOfTheInducedGraph) {
+  const auto graph = corrupted_city().graph;
+  const auto roles = edge_roles(graph);
+  const auto options = datta2016();
+  const auto induced = induce(graph, roles, options.induction);
+  for (const Index c : roles.candidates) {
+    const Index edge = induced.constraint_edge[c];
+    EXPECT_LT(induced.graph.edge(edge).weight, options.induction.odometry_weight);
+  }
+  const double lambda2 = DenseHeat(induced.graph).eigenvalue(1);
+  const auto rounds = heat_prune(graph, roles, options).rounds;
+  ASSERT_EQ(rounds.size(), 7u);
+  EXPECT_NEAR(rounds.front().scale, 5.0 / lambda2, 1e-6 / lambda2);
+  EXPECT_NEAR(rounds.back().scale, 0.001, 1e-12);
+  for (std::size_t s = 2; s < rounds.size(); ++s) {
+    EXPECT_NEAR(rounds[s].scale / rounds[s - 1].scale, rounds[1].scale / rounds[0].scale, 1e-12);
+  }
+}
+
+TEST(HeatPrune, ScaleZeroPrunesNothing) {
+  const auto graph = corrupted_city().graph;
+  auto options = datta2016();
+  options.scales = {1.0, 0.0};
+  const auto rounds = heat_prune(graph, edge_roles(graph), options).rounds;
+  EXPECT_GT(rounds[0].pruned, 0);
+  EXPECT_EQ(rounds[1].pruned, 0);
+}
+
 TEST(HeatPrune, SeparatesFalseLoopsAndScoresRank) {
   const auto corrupted = corrupted_city();
   const auto result = heat_prune(corrupted.graph, edge_roles(corrupted.graph));
@@ -171,9 +203,9 @@ TEST(HeatPrune, RejectsOptionsOutOfRange) {
     change(options);
     EXPECT_THROW(options.validate(), InvalidArgument);
   };
-  bad([](auto& o) { o.scales = {}; });
+  bad([](auto& o) { o.konst = {}; });
   bad([](auto& o) { o.scales = {1.0, 2.0}; });
-  bad([](auto& o) { o.scales = {1.0, 0.0}; });
+  bad([](auto& o) { o.scales = {1.0, -1.0}; });
   bad([](auto& o) { o.konst = {1.0, 2.0}; });
   bad([](auto& o) { o.konst = {std::nan("")}; });
   bad([](auto& o) { o.tolerance = 0.0; });

@@ -11,6 +11,7 @@
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm/slam/prune/induce.hpp"
 #include "isotherm/spectral/edges/edge_verdicts.hpp"
+#include "isotherm/spectral/edges/multiscale_heat.hpp"
 #include "isotherm/spectral/edges/threshold.hpp"
 
 namespace isotherm::slam {
@@ -23,9 +24,9 @@ struct HeatPruneOptions {
   static std::string_view method() { return "heat"; }
   static std::string_view title() { return "Heat-kernel pruning"; }
 
-  /// Times t of exp(-tL), from global to local; finite, > 0, descending. The
-  /// default is Figure 5's list. At t = 0 every pair has distance 2, so the text's
-  /// "minimum is always 0" cannot be meant.
+  /// Times t of exp(-tL), from global to local; finite, >= 0, descending. The default is
+  /// Figure 5's list; empty means spectral::automatic_scales() of the induced graph (section
+  /// V-D). At t = 0 every pair has distance 2 and none is pruned.
   std::vector<double> scales = {100.0, 70.0, 10.0, 5.0, 1.0, 0.1, 0.001};
 
   /// How a scale's threshold follows from the distances at that scale.
@@ -51,7 +52,8 @@ struct HeatPruneOptions {
 template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, HeatPruneOptions>
 void visit_fields(Options& options, Visitor&& visit) {
-  visit("scales", options.scales, "diffusion times, descending", left_open(0, 1e12));
+  visit("scales", options.scales, "diffusion times, descending; none: by the graph",
+        closed(0, 1e12));
   visit("threshold", options.threshold, "rule that splits the distances of a scale");
   visit("konst", options.konst, "deviations above the mean, for mean-sigma; one or one a scale",
         closed(-1e6, 1e6));
@@ -61,20 +63,15 @@ void visit_fields(Options& options, Visitor&& visit) {
   visit_fields(options.induction, visit);
 }
 
-/// What the paper states: Figure 5's scales, mean + konst * sigma, weights from
-/// chi-squared (or, with weights lap_line, from descriptors as it defines them). It gives
-/// konst only as "0 to 4, depending on the scale"; 1 is used at every scale here.
+/// What the paper states: scales from where the kernel saturates down, evenly spaced in their
+/// logarithms (section V-D), mean + konst * sigma (eq. 11), loops weighted below odometry (V-A), by
+/// chi-squared (or, with weights lap_line, by descriptors as it defines them). It leaves room in
+/// the number of scales, seven as in Figure 5; in the smallest, 0.001 as there, since at its 0
+/// nothing can be told; in the weights, a tenth of odometry's at most; and in konst, "0 to 4,
+/// depending on the scale": 1 at every scale.
 HeatPruneOptions datta2016();
 
-/// What happened at one scale.
-struct HeatRound {
-  double scale = 0.0;
-  double threshold = 0.0;   ///< on squared heat distance; +infinity if nothing was split
-  double separation = 0.0;  ///< see spectral::Threshold
-  double konst = 0.0;       ///< as used; 0 for rules without it
-  std::int64_t candidates = 0;
-  std::int64_t pruned = 0;
-};
+using spectral::HeatRound;
 
 struct HeatPruneResult {
   /// score is the largest squared heat distance relative to its scale's threshold

@@ -20,6 +20,7 @@ namespace isotherm::spectral {
 
 enum class EdgeScore {
   heat,               ///< annealed leave-one-out heat affinity, see judge_edges()
+  heat_multiscale,    ///< heat distance, scale by scale: multiscale_heat()
   affinity,           ///< 1 / leave-one-out heat affinity at one scale, certified
   resistance,         ///< leave-one-out effective resistance
   jaccard,            ///< 1 - |common neighbours| / |all neighbours|: the baseline
@@ -27,8 +28,9 @@ enum class EdgeScore {
   rank,               ///< how many vertices lie nearer, where positions are known
 };
 
-constexpr std::array<EnumName<EdgeScore>, 6> enum_names(EdgeScore) {
+constexpr std::array<EnumName<EdgeScore>, 7> enum_names(EdgeScore) {
   return {{{EdgeScore::heat, "heat"},
+           {EdgeScore::heat_multiscale, "heat-multiscale"},
            {EdgeScore::affinity, "affinity"},
            {EdgeScore::resistance, "resistance"},
            {EdgeScore::jaccard, "jaccard"},
@@ -81,9 +83,15 @@ struct JudgeEdgesOptions {
   /// How the threshold is found from the scores, for all methods but heat and rank, which compare
   /// with the control group always.
   EdgeThreshold threshold = EdgeThreshold::control;
-  /// Standard deviations above the mean, for the mean-sigma rule; finite.
+  /// Standard deviations above the mean, for the mean-sigma rule, which heat-multiscale uses
+  /// unless another one is named; finite.
   double konst = 1.0;
-  double tolerance = 1e-9;  ///< affinity: of the heat kernel's entries, absolute, > 0
+  /// Heat-multiscale: diffusion times, descending, in units of 1 / weight; finite, >= 0. Empty:
+  /// automatic_scales().
+  std::vector<double> scales;
+  double tolerance = 1e-9;  ///< affinity, heat-multiscale: of heat, absolute, > 0
+  /// Heat-multiscale: edges, by id, that are known to be true. They stay and count in no threshold.
+  std::vector<Index> trusted;
 
   /// @throws InvalidArgument naming the field that is out of range.
   void validate() const;
@@ -99,7 +107,9 @@ void visit_fields(Options& options, Visitor&& visit) {
   visit("scale", options.scale, "affinity: diffusion time", left_open(0, 1e12));
   visit("threshold", options.threshold, "but for heat, rank: what scores are compared with");
   visit("konst", options.konst, "deviations above the mean, for mean-sigma", closed(-1e6, 1e6));
-  visit("tolerance", options.tolerance, "affinity: error allowed in the heat kernel",
+  visit("scales", options.scales,
+        "heat-multiscale: diffusion times, descending; none: by the graph", closed(0, 1e12));
+  visit("tolerance", options.tolerance, "affinity, heat-multiscale: error allowed in heat",
         left_open(0, 1));
 }
 
@@ -134,8 +144,12 @@ struct JudgeEdgesResult {
 /// counted from the end that has fewer of them: where vertices are sparse true edges are long, but
 /// do not reach past many. Chains are judged like other edges. O(edges sqrt n) in the plane.
 ///
+/// Heat-multiscale is multiscale_heat() of all edges but bridges, self-loops and trusted ones; its
+/// scores are relative to the thresholds, and its own threshold is 1.
+///
 /// The seed is that of the random pairs.
-/// @throws InvalidArgument, also for rank unless there is a finite position for each vertex;
+/// @throws InvalidArgument, also for rank unless there is a finite position for each vertex and for
+/// a trusted edge outside the graph;
 ///   NumericalError, Cancelled
 JudgeEdgesResult judge_edges(const WeightedGraph& graph, const JudgeEdgesOptions& options = {},
                              const Eigen::MatrixXd& positions = {}, const RunContext& run = {});
