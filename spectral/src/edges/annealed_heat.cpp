@@ -22,6 +22,8 @@ namespace {
 constexpr int kLongestDetour = 12;
 constexpr double kBudget = 1e9;  // steps along edges a round
 constexpr double kFirstScale = 0.5;
+// What a large change of judgement finds must be more likely false than true.
+constexpr double kEven = 0.5;
 constexpr double kMostFalse = 2.0 / 3.0;  // a graph with more would be none
 
 /// Three times the median detour, from a thousand edges spread evenly over the list:
@@ -211,13 +213,12 @@ AnnealedHeat anneal_reduced(const WeightedGraph& graph, std::span<const double> 
   result.horizon = walks.horizon;
   result.scores = judgement.edges;
   judge_in_plane(graph, lengths, rounds.pairs(), walks, result);
-  double chance = options.chance;
+  double chance = result.in_plane ? std::min(options.chance, kEven) : options.chance;
   if (!result.in_plane) {
     auto other = options.rounds > 2 ? rounds.doubting(first) : judgement;
     if (explains_more(other, judgement)) {
       judgement = std::move(other);
-      // What was found by doubting must be more likely false than true.
-      chance = std::min(chance, 0.5);
+      chance = std::min(chance, kEven);
     }
     result.scores = std::move(judgement.edges);
     result.false_count = judgement.groups.false_count;

@@ -56,7 +56,7 @@ class PlanarSearch {
       chosen_[edge] = true;
       if (!test(chosen_)) chosen_[edge] = false;
     }
-    PlanarSubgraph result{chosen_, 0.0};
+    PlanarSubgraph result{chosen_, 0.0, work_};
     for (std::size_t e = 0; e < chosen_.size(); ++e) {
       if (chosen_[e]) result.worth += worth_[e];
     }

@@ -10,7 +10,7 @@ namespace isotherm::spectral::detail {
 
 struct PlanarSubgraphOptions {
   int rounds = 6;              ///< of improvement at most, >= 0
-  double budget = 2e8;         ///< edges that planarity tests may look at, over all tests
+  double budget = 3e7;         ///< edges that planarity tests may look at, over all tests
   double most_left_out = 0.2;  ///< share of the edges; a graph that needs more is not nearly planar
   ProgressCallback progress = {};
 };
@@ -19,6 +19,7 @@ struct PlanarSubgraphOptions {
 struct PlanarSubgraph {
   std::vector<bool> chosen;  ///< by edge; empty where the graph is not nearly planar
   double worth = 0.0;        ///< sum over the chosen edges
+  double work = 0.0;         ///< edges that planarity tests have looked at
 };
 
 /// Edges of a nearly planar graph that can be drawn without crossings and to which no other can be

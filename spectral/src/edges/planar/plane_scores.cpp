@@ -25,8 +25,12 @@ PlanarSubgraph best_subgraph(const WeightedGraph& graph, std::span<const double>
                              std::span<const double> suspicion,
                              const WalkAffinityOptions& options) {
   constexpr int kMoreStarts = 2;
-  const PlanarSubgraphOptions search = {.progress = options.progress};
+  constexpr double kFirst = 0.7;  // of the budget, for the first start
+  PlanarSubgraphOptions search = {.progress = options.progress};
+  const double all = search.budget;
+  search.budget = kFirst * all;
   auto best = find_planar_subgraph(graph, lengths, suspicion, search);
+  search.budget = all - best.work;
   for (int start = 0; start < kMoreStarts && !best.chosen.empty(); ++start) {
     const auto affinities = affinities_within(graph, best, {}, options).edges;
     std::vector<double> within;
@@ -34,6 +38,7 @@ PlanarSubgraph best_subgraph(const WeightedGraph& graph, std::span<const double>
       within.push_back(-std::log(std::max(affinity, std::numeric_limits<double>::min())));
     }
     auto other = find_planar_subgraph(graph, lengths, within, search);
+    search.budget -= other.work;
     if (other.worth <= best.worth) break;
     best = std::move(other);
   }
