@@ -66,6 +66,7 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
   Input read_input(const RunContext& context) const {
     if (!neighbours && !radius) {
       auto file = read_graph(input, {.strict = flags.strict});
+      merge_directions(file, {.strict = flags.strict});
       auto points = positions.empty() ? Eigen::MatrixXd() : positions_of(file.ids);
       return {std::move(file), std::move(points)};
     }

@@ -29,8 +29,9 @@ constexpr std::array<EnumName<Embedding>, 3> enum_names(Embedding) {
 
 struct EmbedOptions {
   Embedding method = Embedding::commute_time;
-  std::int64_t dimensions = 2;  // columns, >= 1; null eigenvectors have none
-  double scale = 1.0;           // diffusion time, for heat; finite, >= 0
+  // Columns, >= 1. Null eigenvectors have none, but for heat, if there are several.
+  std::int64_t dimensions = 2;
+  double scale = 1.0;  // diffusion time, for heat; finite, >= 0
   LaplacianKind laplacian = LaplacianKind::combinatorial;
 
   void validate() const { require_fields_in_range(*this); }
@@ -40,18 +41,19 @@ template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, EmbedOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("method", options.method, "coordinates to compute");
-  visit("dimensions", options.dimensions, "number of coordinates", closed(1, 1e6));
+  visit("dimensions", options.dimensions,
+        "number of coordinates; for heat those that tell components apart come first",
+        closed(1, 1e6));
   visit("scale", options.scale, "heat: diffusion time", closed(0, 1e12));
   visit("laplacian", options.laplacian, "matrix whose eigenvectors are used");
 }
 
 Eigen::MatrixXd coordinates(const EigenDecomposition& eigen, const EmbedOptions& options) {
-  const Eigen::Index columns = eigen.count() - eigen.null_count;
   switch (options.method) {
     case Embedding::commute_time:
       return commute_time_embedding(eigen);
     case Embedding::heat:
-      return heat_embedding(eigen, options.scale).rightCols(columns);
+      return heat_embedding(eigen, options.scale);
     case Embedding::eigenmaps:
       return laplacian_eigenmap(eigen);
   }
@@ -98,29 +100,37 @@ struct EmbedVerb : OptionVerb<EmbedOptions> {
 
   int run() {
     if (resolve_or_dump()) return kOk;
-    const auto file = read_graph(input, {.strict = flags.strict});
+    auto file = read_graph(input, {.strict = flags.strict});
+    merge_directions(file, {.strict = flags.strict});
     for (const auto& diagnostic : file.report.diagnostics) warn(flags, to_string(diagnostic));
     const Laplacian laplacian(file.graph, options.laplacian);
-    const Index available = laplacian.size() - laplacian.components().count;
+    const Index components = laplacian.components().count;
+    // Heat tells components apart by the null space, in which one component has one point.
+    const bool null_vectors = options.method == Embedding::heat && components > 1;
+    const Index available = laplacian.size() - (null_vectors ? 0 : components);
     if (available < options.dimensions) {
       warn(flags, fmt::format("the graph has only {} coordinates", available));
+    }
+    if (null_vectors && options.dimensions < components) {
+      warn(flags, fmt::format("{} coordinates do not tell {} components apart", options.dimensions,
+                              components));
     }
     EigenOptions eigen_options;
     eigen_options.count = static_cast<Index>(
         std::clamp<std::int64_t>(options.dimensions, 1, std::max<Index>(1, available)));
-    eigen_options.null_vectors = false;
+    eigen_options.null_vectors = null_vectors;
     eigen_options.progress = progress_line(flags);
     const auto eigen = smallest_eigenpairs(laplacian, eigen_options);
     const auto rows = coordinates(eigen, options);
-    report(eigen, laplacian.components().count);
+    report(eigen, components);
     write_text(output, format_suffix(output) == ".npy" ? npy_text(rows) : csv_text(rows, file.ids));
-    write_json(flags.json, to_json(eigen, laplacian.components().count));
+    write_json(flags.json, to_json(eigen, components));
     return eigen.status == EigenStatus::converged ? kOk : kNotConverged;
   }
 
-  // Null eigenvalues come first, one a component, without being computed.
+  // Null eigenvalues come first, one a component, whether they were asked for or not.
   Json to_json(const EigenDecomposition& eigen, Index components) const {
-    std::vector<double> values(static_cast<std::size_t>(components), 0.0);
+    std::vector<double> values(static_cast<std::size_t>(components - eigen.null_count), 0.0);
     std::vector<double> bounds = values;
     values.insert(values.end(), eigen.values.begin(), eigen.values.end());
     bounds.insert(bounds.end(), eigen.bounds.begin(), eigen.bounds.end());
@@ -141,7 +151,8 @@ struct EmbedVerb : OptionVerb<EmbedOptions> {
   void report(const EigenDecomposition& eigen, Index components) const {
     say(flags, fmt::format("{}: {} vertices, {} components, {} eigenpairs by {}, {:.2f} s{}",
                            enum_name(options.method), eigen.size(), components,
-                           components + eigen.count(), enum_name(eigen.method), eigen.seconds,
+                           components - eigen.null_count + eigen.count(), enum_name(eigen.method),
+                           eigen.seconds,
                            eigen.status == EigenStatus::converged ? "" : "; not converged"));
   }
 };

@@ -1,5 +1,10 @@
 // The verbs on plain weighted graphs.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -100,6 +105,30 @@ TEST_F(GraphVerbs, EmbedWritesOneRowAVertex) {
   EXPECT_THAT(bytes, HasSubstr("'shape': (40, 3)"));
   EXPECT_EQ(bytes.size() % 64, (40 * 3 * 8) % 64);
   EXPECT_THAT(read_text(folder / "result.json"), HasSubstr("\"converged\": true"));
+}
+
+TEST_F(GraphVerbs, HeatEmbeddingTellsComponentsApart) {
+  // A triangle and an edge: with all coordinates, distances are those of exp(-t L).
+  write_text(folder / "parts.csv", "0 1\n1 2\n2 0\n5 6\n");
+  const auto text = run_ok("embed parts.csv -o - --method heat --scale 1e3 --dimensions 5");
+  std::map<int, std::vector<double>> rows;
+  std::istringstream lines(text.substr(text.find('\n') + 1));
+  for (std::string line; std::getline(lines, line);) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream fields(line);
+    int vertex = 0;
+    fields >> vertex;
+    for (double x = 0.0; fields >> x;) rows[vertex].push_back(x);
+  }
+  const auto squared = [&rows](int i, int j) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < rows[i].size(); ++k) sum += std::pow(rows[i][k] - rows[j][k], 2);
+    return sum;
+  };
+  EXPECT_NEAR(squared(0, 1), 0.0, 1e-12);
+  EXPECT_NEAR(squared(0, 5), 1.0 / 3 + 1.0 / 2, 1e-12);
+  const auto few = run("embed parts.csv -o - --method heat --dimensions 1");
+  EXPECT_THAT(few.err, HasSubstr("1 coordinates do not tell 2 components apart"));
 }
 
 TEST_F(GraphVerbs, SmallGraphsAndBadInput) {

@@ -118,5 +118,19 @@ TEST(WriteGraph, ReadsBack) {
   EXPECT_THROW(write_edge_csv(folder / "b.csv", graph, {1}), InvalidArgument);
 }
 
+TEST(MergeDirections, MakesBothDirectionsOfAnEdgeOne) {
+  const std::string text = "from,to,weight\n1,2,3\n2,3,1\n2,1,3\n3,2,2\n1,2,5\n4,4,1\n4,4,1\n";
+  auto file = parse(text);
+  merge_directions(file);
+  ASSERT_EQ(file.graph.edge_count(), 5);  // the repeated direction is an edge of its own
+  EXPECT_EQ(file.graph.edge(0).weight, 3.0);
+  EXPECT_EQ(file.graph.edge(1).weight, 1.5);
+  EXPECT_EQ(file.graph.edge(2).weight, 5.0);
+  EXPECT_EQ(file.report.notes.at("edge in both directions"), 1u);
+  EXPECT_EQ(file.report.repairs.at("edge with two weights"), 1u);
+  auto strict = parse(text);
+  EXPECT_THROW(merge_directions(strict, {.strict = true}), ParseError);
+}
+
 }  // namespace
 }  // namespace isotherm::spectral

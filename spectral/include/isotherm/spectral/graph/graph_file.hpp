@@ -33,6 +33,12 @@ GraphFile read_graph(const std::string& path, const ReadOptions& options = {});
 /// The same from a reader that stands at the start of its input.
 GraphFile read_graph(TextReader& reader, const ReadOptions& options = {});
 
+/// Makes both directions of an edge one edge, at the place of the first, with a note in the report:
+/// lists of directed edges have each twice. Edges that are repeated in the same direction stay.
+/// Where the weights differ, the edge has their mean, which is a repair. O(m log m).
+/// @throws ParseError for a repair if `options.strict` is set
+void merge_directions(GraphFile& file, const ReadOptions& options = {});
+
 /// Writes `from,to,weight` rows with column names. Vertices without an edge do
 /// not appear.
 /// @throws FileError if the file cannot be written, InvalidArgument unless `ids`
