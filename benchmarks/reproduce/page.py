@@ -183,9 +183,9 @@ class Page:
                 wins_of_all += ours <= TIE * min(lowest, errors[NOT_THE_PAPERS])
         return cells, wins, wins_of_all
 
-    def table2_range(self, column):
-        """Least and largest aligned RMSE of a column over all cells of Table II."""
-        errors = [bicocca_error(self.results, self.extent, *cell, column, "rmse")
+    def table2_range(self, column, key="rmse"):
+        """Least and largest aligned RMSE (or other error) of a column over Table II."""
+        errors = [bicocca_error(self.results, self.extent, *cell, column, key)
                   for cell in self.table2_cells()]
         return min(errors), max(errors)
 
