@@ -98,10 +98,7 @@ PairScores resistance_scores(const WeightedGraph& graph, const std::vector<Verte
                              const RunContext& run) {
   constexpr std::size_t kMostSolves = 1000;
   PairScores scores;
-  scores.edges = edge_resistances(graph).values;
-  for (std::size_t e = 0; e < scores.edges.size(); ++e) {
-    scores.edges[e] = leave_one_out_resistance(scores.edges[e], graph.edges()[e].weight);
-  }
+  scores.edges = edge_resistances(graph).without;
   LaplacianSolver solver{Laplacian(graph)};
   const auto component = connected_components(graph).label;
   Eigen::VectorXd current = Eigen::VectorXd::Zero(graph.vertex_count());

@@ -1,10 +1,12 @@
 #include "isotherm/spectral/resistance/effective_resistance.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
 #include <Eigen/QR>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "isotherm/base/error.hpp"
 #include "isotherm/spectral/graph/laplacian.hpp"
@@ -108,6 +110,97 @@ TEST(EffectiveResistance, CommuteTimeIsResistanceTimesVolume) {
   EXPECT_NEAR(times.values[1], 8.0 * 0.75, 1e-12);
   EXPECT_EQ(times.values[2], kInfinity);
   EXPECT_EQ(times.values[3], 0.0);
+}
+
+using Exact = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<80>>;
+
+/// The conductance between two vertices of a graph, by eliminating all others one after the
+/// other in 80 digits; `without` is left out.
+Exact exact_conductance(const WeightedGraph& graph, VertexPair pair, Index without = -1) {
+  const Index n = graph.vertex_count();
+  std::vector<std::vector<Exact>> mesh(n, std::vector<Exact>(n, 0));
+  for (Index e = 0; e < graph.edge_count(); ++e) {
+    const auto& edge = graph.edge(e);
+    if (e == without || edge.from == edge.to) continue;
+    mesh[edge.from][edge.to] += edge.weight;
+    mesh[edge.to][edge.from] += edge.weight;
+  }
+  for (Index v = 0; v < n; ++v) {
+    if (v == pair.from || v == pair.to) continue;
+    Exact sum = 0;
+    for (Index a = 0; a < n; ++a) sum += mesh[v][a];
+    if (sum == 0) continue;
+    for (Index a = 0; a < n; ++a) {
+      if (mesh[v][a] == 0) continue;
+      for (Index b = 0; b < n; ++b) {
+        if (a != b) mesh[a][b] += mesh[v][a] * mesh[v][b] / sum;
+      }
+    }
+    for (Index a = 0; a < n; ++a) mesh[v][a] = mesh[a][v] = 0;
+  }
+  return mesh[pair.from][pair.to];
+}
+
+void expect_within_bound(double value, const Exact& conductance, double bound) {
+  if (conductance == 0) {
+    EXPECT_EQ(value, kInfinity);
+    return;
+  }
+  const Exact error = abs(Exact(value) * conductance - 1);
+  EXPECT_LE(static_cast<double>(error), bound) << value;
+}
+
+TEST(EffectiveResistance, IsWithinItsBoundForWeightsOverSixteenDecades) {
+  Random random(54);
+  for (int round = 0; round < 4; ++round) {
+    for (const auto& plain : {loopy_path(24, 14, random), grid_graph(5, 5), complete_graph(12),
+                              random_geometric(26, 0.4, random)}) {
+      const auto graph = spread_weights(plain, 16.0, random);
+      auto pairs = edge_pairs(graph);
+      for (int k = 0; k < 10; ++k) {
+        const Index n = graph.vertex_count();
+        pairs.push_back({random_vertex(random, n), random_vertex(random, n)});
+      }
+      const auto result = effective_resistances(graph, pairs);
+      EXPECT_LT(result.bound, 1e-12);
+      for (std::size_t k = 0; k < pairs.size(); ++k) {
+        if (pairs[k].from == pairs[k].to) continue;
+        expect_within_bound(result.values[k], exact_conductance(graph, pairs[k]), result.bound);
+      }
+    }
+  }
+}
+
+TEST(EffectiveResistance, TwoCliquesAndABridgeOfAnyWeight) {
+  const auto both = disjoint_union(complete_graph(10), complete_graph(10));
+  for (const double weight : {1e-14, 1e-7, 1e-6, 1.0, 1e6, 1e7, 1e14}) {
+    std::vector<WeightedEdge> edges(both.edges().begin(), both.edges().end());
+    edges.push_back({0, 10, weight});
+    const auto result = edge_resistances({20, edges});
+    for (Index e = 0; e < both.edge_count(); ++e) {
+      EXPECT_NEAR(result.values[e], 0.2, 1e-14) << weight;
+      EXPECT_NEAR(result.without[e], 0.25, 1e-14) << weight;
+    }
+    EXPECT_NEAR(result.values.back() * weight, 1.0, 1e-14);
+    EXPECT_EQ(result.without.back(), kInfinity);
+  }
+}
+
+TEST(EffectiveResistance, WithoutAnEdgeIsThatOfTheRestInEightyDigits) {
+  Random random(55);
+  const auto graph = spread_weights(loopy_path(25, 20, random), 16.0, random);
+  const auto result = edge_resistances(graph);
+  for (Index e = 0; e < graph.edge_count(); ++e) {
+    const auto& edge = graph.edge(e);
+    if (edge.from == edge.to) continue;
+    const auto parallel =
+        std::count_if(graph.edges().begin(), graph.edges().end(), [&](const WeightedEdge& other) {
+          return std::minmax(other.from, other.to) == std::minmax(edge.from, edge.to);
+        });
+    if (parallel > 1) continue;
+    expect_within_bound(result.without[e], exact_conductance(graph, {edge.from, edge.to}, e),
+                        result.bound);
+  }
 }
 
 TEST(EffectiveResistance, LeaveOneOut) {
