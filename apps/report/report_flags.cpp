@@ -33,4 +33,10 @@ std::string file_title(const std::string& path) {
   return path == "-" ? "standard input" : std::filesystem::path(path).filename().string();
 }
 
+std::string files_title(const std::vector<std::string>& paths) {
+  std::string title;
+  for (const auto& path : paths) title += (title.empty() ? "" : ", ") + file_title(path);
+  return title;
+}
+
 }  // namespace isotherm::apps

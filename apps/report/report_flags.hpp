@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "command.hpp"
 #include "report/report.hpp"
@@ -29,5 +30,8 @@ void write_report_document(const std::string& path, const Json& document);
 
 /// The last part of a path, as people call a file; "standard input" for "-".
 std::string file_title(const std::string& path);
+
+/// The same of several.
+std::string files_title(const std::vector<std::string>& paths);
 
 }  // namespace isotherm::apps

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "console.hpp"
 #include "isotherm/network/io/range_file.hpp"
@@ -16,6 +17,7 @@
 #include "isotherm/slam/io/trajectory_file.hpp"
 #include "isotherm/spectral/graph/graph_file.hpp"
 #include "option_verb.hpp"
+#include "verbs/pose_graph_input.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {
@@ -67,19 +69,17 @@ spectral::GraphFile structure_of(const slam::PoseGraph<Pose>& graph) {
 }
 
 struct ConvertVerb : OptionVerb<NoOptions> {
-  std::string input;
+  std::vector<std::string> input;
   std::string output;
   std::string to;
 
   int run() {
     if (resolve_or_dump()) return kOk;
     const FileFormat target = target_format();
-    TextReader reader(input);
-    const auto source = slam::require_format(reader);
-    const ReadReport report = convert(reader, source, target);
-    for (const auto& diagnostic : report.diagnostics) warn(flags, to_string(diagnostic));
+    const ReadReport report = convert(target);
     for (const auto& loss : losses_) warn(flags, loss);
-    say(flags, fmt::format("{} ({}) -> {} ({})", input, report.format, output, enum_name(target)));
+    say(flags, fmt::format("{} ({}) -> {} ({})", fmt::join(input, ", "), report.format, output,
+                           enum_name(target)));
     write_json(flags.json, {{"schema", "isotherm.convert/1"},
                             {"from", report.format},
                             {"to", enum_name(target)},
@@ -102,6 +102,14 @@ struct ConvertVerb : OptionVerb<NoOptions> {
       throw InvalidArgument("--to", "is needed where the name of the output tells no format");
     }
     return *named;
+  }
+
+  ReadReport convert(FileFormat target) {
+    if (input.size() > 1) return convert_pose_graph(read_input_graph(input, flags), target);
+    TextReader reader(input.front());
+    const auto report = convert(reader, slam::require_format(reader), target);
+    warn_of(report, flags);
+    return report;
   }
 
   ReadReport convert(TextReader& reader, FileFormat source, FileFormat target) {
@@ -208,9 +216,9 @@ struct ConvertVerb : OptionVerb<NoOptions> {
 Verb add_convert(CLI::App& root) {
   auto convert = std::make_shared<ConvertVerb>();
   CLI::App* verb = root.add_subcommand("convert", "write a file in another format");
-  verb->add_option("input", convert->input,
-                   "pose graph, trajectory, ranges or plain graph (- for stdin)")
-      ->required();
+  add_graph_inputs(*verb, convert->input,
+                   "pose graph (also several files of one), trajectory, ranges or plain graph "
+                   "(- for stdin)");
   convert->flags.outputs
       .add(*verb, "-o,--output", convert->output, "file to write (- for stdout)", {})
       ->required();

@@ -27,7 +27,7 @@ struct CorruptVerb : OptionVerb<CorruptOptions> {
   int run() {
     if (resolve_or_dump()) return kOk;
     options.seed = flags.seed;
-    const auto file = read_input_graph(input, flags);
+    const auto file = read_input_graph({input}, flags);
     return std::visit([this](const auto& graph) { return corrupt_graph(graph); }, file.graph);
   }
 

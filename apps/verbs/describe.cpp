@@ -63,6 +63,7 @@ void add_summary(Json& json, const GraphSummary& summary) {
   json["consecutive_edges"] = summary.consecutive_edges;
   json["other_edges"] = summary.other_edges;
   json["repeated_edges"] = summary.repeated_edges;
+  json["exact_repeats"] = summary.exact_repeats;
   json["self_edges"] = summary.self_edges;
   json["fixed"] = summary.fixed;
   json["robots"] = summary.robots;
@@ -168,6 +169,8 @@ void append_text(std::string& text, const Json& json, std::size_t indent) {
 Json describe(const PoseGraphFile& file) {
   Json json = start("pose-graph", file.report);
   std::visit([&](const auto& graph) { add_summary(json, summarize(graph)); }, file.graph);
+  const auto robots = robots_of(file);
+  for (const auto& robot : robots) json["poses_of_robots"][robot.name] = robot.vertices;
   add_report(json, file.report);
   return json;
 }

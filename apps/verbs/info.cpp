@@ -1,8 +1,11 @@
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "isotherm/slam/io/file_format.hpp"
 #include "option_verb.hpp"
 #include "verbs/describe.hpp"
+#include "verbs/pose_graph_input.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {
@@ -11,7 +14,7 @@ namespace {
 using slam::FileContent;
 
 struct InfoVerb : OptionVerb<NoOptions> {
-  std::string input;
+  std::vector<std::string> input;
 
   int run() {
     if (resolve_or_dump()) return kOk;
@@ -23,7 +26,10 @@ struct InfoVerb : OptionVerb<NoOptions> {
 
  private:
   Json read_and_describe() const {
-    TextReader reader(input);
+    if (input.size() > 1) {
+      return describe(slam::read_pose_graphs(input, {.strict = flags.strict}));
+    }
+    TextReader reader(input.front());
     const auto format = slam::require_format(reader);
     const ReadOptions reading{.strict = flags.strict};
     switch (slam::content_of(format)) {
@@ -45,8 +51,8 @@ struct InfoVerb : OptionVerb<NoOptions> {
   Json describe_ranges(TextReader& reader, slam::FileFormat format,
                        const ReadOptions& reading) const {
     Json json = describe(network::read_ranges(reader, reading));
-    if (format == slam::FileFormat::pyfg && input != "-") {
-      Json graph = describe(slam::read_pose_graph(input, reading));
+    if (format == slam::FileFormat::pyfg && input.front() != "-") {
+      Json graph = describe(slam::read_pose_graph(input.front(), reading));
       graph.erase("schema");
       json["pose_graph"] = std::move(graph);
     }
@@ -59,9 +65,9 @@ struct InfoVerb : OptionVerb<NoOptions> {
 Verb add_info(CLI::App& root) {
   auto info = std::make_shared<InfoVerb>();
   CLI::App* verb = root.add_subcommand("info", "say what is in a file");
-  verb->add_option("input", info->input,
-                   "pose graph, trajectory, ranges or plain graph (- for stdin)")
-      ->required();
+  add_graph_inputs(*verb, info->input,
+                   "pose graph (also several files of one), trajectory, ranges or plain graph "
+                   "(- for stdin)");
   info->add_flags(*verb);
   return verb_of(verb, info);
 }

@@ -1,5 +1,6 @@
 #include <memory>
 #include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -16,7 +17,7 @@ namespace {
 using namespace slam;
 
 struct LabelVerb : OptionVerb<LabelOptions> {
-  std::string input;
+  std::vector<std::string> input;
   std::string output;
   GroundTruthSource truth;
 
@@ -49,7 +50,7 @@ struct LabelVerb : OptionVerb<LabelOptions> {
 Verb add_label(CLI::App& root) {
   auto label = std::make_shared<LabelVerb>();
   CLI::App* verb = root.add_subcommand("label", "label loop closures by ground truth");
-  verb->add_option("input", label->input, "pose graph (- for stdin)")->required();
+  add_graph_inputs(*verb, label->input, "pose graph, or several files of one (- for stdin)");
   verb->add_option("--ground-truth", label->truth.path,
                    "g2o, CSV (time,x,y,theta), TUM, KITTI or EuRoC file")
       ->required()

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <memory>
 #include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "console.hpp"
+#include "isotherm/base/words.hpp"
 #include "isotherm/slam/graph/trusted_edges.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm/slam/io/trajectory_file.hpp"
@@ -21,7 +23,7 @@ namespace {
 using namespace slam;
 
 struct OptimizeVerb : OptionVerb<OptimizeOptions> {
-  std::string input;
+  std::vector<std::string> input;
   std::string output;
   std::string trusted;
 
@@ -67,6 +69,10 @@ struct OptimizeVerb : OptionVerb<OptimizeOptions> {
       warn(flags, fmt::format("{} information matrices have a negative eigenvalue, taken as zero",
                               result.projected_information));
     }
+    if (result.repeats > 0) {
+      warn(flags, counted(result.repeats, "edge repeats", "edges repeat") +
+                      " another one to the last digit; counted once");
+    }
     if (result.components > 1) {
       warn(flags, fmt::format("the graph has {} connected components, each held at one pose",
                               result.components));
@@ -81,19 +87,14 @@ struct OptimizeVerb : OptionVerb<OptimizeOptions> {
 
   template <class Pose>
   Json to_json(const OptimizeResult<Pose>& result) const {
-    return {{"schema", "isotherm.optimize/1"},
-            {"status", enum_name(result.status)},
-            {"iterations", result.iterations},
-            {"initial_cost", result.initial_cost},
-            {"final_cost", result.final_cost},
-            {"chi2", result.chi2.sum()},
-            {"poses", result.poses.size()},
-            {"constraints", result.chi2.size()},
-            {"components", result.components},
-            {"held", result.held},
-            {"projected_information", result.projected_information},
-            {"seconds", result.seconds},
-            {"options", options_to_json(options)}};
+    return {
+        {"schema", "isotherm.optimize/1"}, {"status", enum_name(result.status)},
+        {"iterations", result.iterations}, {"initial_cost", result.initial_cost},
+        {"final_cost", result.final_cost}, {"chi2", result.chi2.sum()},
+        {"poses", result.poses.size()},    {"constraints", result.chi2.size()},
+        {"components", result.components}, {"held", result.held},
+        {"repeats", result.repeats},       {"projected_information", result.projected_information},
+        {"seconds", result.seconds},       {"options", options_to_json(options)}};
   }
 };
 
@@ -102,7 +103,7 @@ struct OptimizeVerb : OptionVerb<OptimizeOptions> {
 Verb add_optimize(CLI::App& root) {
   auto optimize = std::make_shared<OptimizeVerb>();
   CLI::App* verb = root.add_subcommand("optimize", "find the poses that fit a pose graph best");
-  verb->add_option("input", optimize->input, "pose graph (- for stdin)")->required();
+  add_graph_inputs(*verb, optimize->input, "pose graph, or several files of one (- for stdin)");
   optimize->flags.outputs.add(
       *verb, "-o,--output", optimize->output,
       "optimised pose graph (g2o; - for stdout), or trajectory if named .tum", {".g2o", ".tum"});

@@ -2,17 +2,21 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
+#include <variant>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "console.hpp"
+#include "isotherm/base/words.hpp"
 
 namespace isotherm::apps {
 namespace {
 
 // One line a kind of finding: a file may have thousands of the same.
-void warn_of(const ReadReport& report, const std::map<std::string, std::uint64_t>& counts,
-             const CommonFlags& flags) {
+void warn_of_kinds(const ReadReport& report, const std::map<std::string, std::uint64_t>& counts,
+                   const CommonFlags& flags) {
   for (const auto& [kind, times] : counts) {
     const auto first =
         std::find_if(report.diagnostics.begin(), report.diagnostics.end(),
@@ -25,13 +29,48 @@ void warn_of(const ReadReport& report, const std::map<std::string, std::uint64_t
   }
 }
 
+std::string merged_in_words(const slam::PoseGraphFile& file) {
+  const auto [vertices, edges] = std::visit(
+      [](const auto& graph) { return std::pair(graph.ids.size(), graph.constraints.size()); },
+      file.graph);
+  const auto repeated = file.report.notes.find("repeated edge");
+  std::string text = fmt::format("{} read as one graph: {}, {}", counted(file.paths.size(), "file"),
+                                 counted(vertices, "pose"), counted(edges, "edge"));
+  if (repeated != file.report.notes.end()) {
+    text += fmt::format(", {} counted once", counted(repeated->second, "repeated edge"));
+  }
+  const auto robots = robots_in_words(file);
+  return robots.empty() ? text : text + "; " + robots;
+}
+
 }  // namespace
 
-slam::PoseGraphFile read_input_graph(const std::string& path, const CommonFlags& flags) {
-  auto file = slam::read_pose_graph(path, {.strict = flags.strict});
-  warn_of(file.report, file.report.repairs, flags);
-  warn_of(file.report, file.report.notes, flags);
+void warn_of(const ReadReport& report, const CommonFlags& flags) {
+  warn_of_kinds(report, report.repairs, flags);
+  warn_of_kinds(report, report.notes, flags);
+}
+
+slam::PoseGraphFile read_input_graph(const std::vector<std::string>& paths,
+                                     const CommonFlags& flags) {
+  auto file = slam::read_pose_graphs(paths, {.strict = flags.strict});
+  warn_of(file.report, flags);
+  if (paths.size() > 1) say(flags, merged_in_words(file));
   return file;
+}
+
+void add_graph_inputs(CLI::App& verb, std::vector<std::string>& paths, const std::string& help) {
+  verb.add_option("input", paths, help)->required()->type_name("FILE");
+}
+
+std::string robots_in_words(const slam::PoseGraphFile& file) {
+  const auto robots = slam::robots_of(file);
+  if (robots.size() < 2) return {};
+  std::vector<std::string> parts;
+  for (const auto& robot : robots) {
+    parts.push_back(fmt::format("{} ({})", robot.name.empty() ? "without a letter" : robot.name,
+                                counted(robot.vertices, "pose")));
+  }
+  return fmt::format("robots {}", fmt::join(parts, ", "));
 }
 
 }  // namespace isotherm::apps

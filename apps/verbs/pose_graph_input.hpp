@@ -1,14 +1,27 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "command.hpp"
+#include "isotherm/base/read_report.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 
 namespace isotherm::apps {
 
-/// Reads a pose graph and says on stderr what was repaired or skipped.
+/// Says on stderr what was repaired, noted or skipped, a line a kind.
+void warn_of(const ReadReport& report, const CommonFlags& flags);
+
+/// Reads a pose graph, from one file or several, and says on stderr what was repaired or
+/// skipped, and, of several, what they make together.
 /// @throws FileError, ParseError
-slam::PoseGraphFile read_input_graph(const std::string& path, const CommonFlags& flags);
+slam::PoseGraphFile read_input_graph(const std::vector<std::string>& paths,
+                                     const CommonFlags& flags);
+
+/// The positional argument that names them.
+void add_graph_inputs(CLI::App& verb, std::vector<std::string>& paths, const std::string& help);
+
+/// "robots a (110 poses), b (95 poses)"; empty if there is but one.
+std::string robots_in_words(const slam::PoseGraphFile& file);
 
 }  // namespace isotherm::apps

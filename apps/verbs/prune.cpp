@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 #include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -109,7 +110,7 @@ struct PruneVerb {
   CommonFlags flags;
   PruneFlags method;
   PipelineOptions options;
-  std::string input;
+  std::vector<std::string> input;
   std::string output;
   std::string verdicts;
   std::string trusted;
@@ -136,7 +137,7 @@ struct PruneVerb {
     const RunContext context{flags.threads, progress_line(flags), flags.seed};
     const auto roles = trusted.empty() ? edge_roles(graph) : read_trusted_edges(trusted, graph);
     if (flags.strict) require_usable_odometry(graph, roles);
-    PruneRun<Pose> input_run{file_title(input), options, {}};
+    PruneRun<Pose> input_run{files_title(input), options, {}};
     if (!truth.path.empty()) input_run.truth = read_ground_truth(graph, truth);
     auto result = prune_and_optimize(graph, roles, options, context);
     report(result.decisions);
@@ -190,7 +191,7 @@ struct PruneVerb {
 Verb add_prune(CLI::App& root) {
   auto prune = std::make_shared<PruneVerb>();
   CLI::App* verb = root.add_subcommand("prune", "remove false loop closures from a pose graph");
-  verb->add_option("input", prune->input, "pose graph (- for stdin)")->required();
+  add_graph_inputs(*verb, prune->input, "pose graph, or several files of one (- for stdin)");
   auto& outputs = prune->flags.outputs;
   outputs.add(*verb, "-o,--output", prune->output, "pruned pose graph to write (- for stdout)",
               {".g2o"});

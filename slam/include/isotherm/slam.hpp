@@ -22,6 +22,7 @@
 #include "isotherm/slam/graph/odometry.hpp"
 #include "isotherm/slam/graph/pose.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
+#include "isotherm/slam/graph/repeats.hpp"
 #include "isotherm/slam/graph/trajectory.hpp"
 #include "isotherm/slam/graph/trusted_edges.hpp"
 #include "isotherm/slam/graph/usable_odometry.hpp"

@@ -12,6 +12,7 @@
 #include "isotherm/base/text_writer.hpp"
 #include "isotherm/slam/graph/information.hpp"
 #include "isotherm/slam/graph/odometry.hpp"
+#include "isotherm/slam/graph/repeats.hpp"
 #include "isotherm/spectral/graph/weighted_graph.hpp"
 
 namespace isotherm::slam {
@@ -86,7 +87,7 @@ class Summarizer {
   const Constraint<Pose>& constraint(Index k) const { return graph_.constraints[k]; }
 
   std::string ends(const Constraint<Pose>& edge) const {
-    return std::to_string(graph_.ids[edge.from]) + " -> " + std::to_string(graph_.ids[edge.to]);
+    return vertex_name(graph_.ids[edge.from]) + " -> " + vertex_name(graph_.ids[edge.to]);
   }
 
   void count_vertices() {
@@ -94,8 +95,8 @@ class Summarizer {
     summary_.vertices = graph_.ids.size();
     summary_.fixed = graph_.fixed.size();
     summary_.has_poses = !graph_.poses.empty();
-    std::set<VertexId> robots;
-    for (const VertexId id : graph_.ids) robots.insert(id >> 56);
+    std::set<std::uint64_t> robots;
+    for (Index v = 0; v < graph_.vertex_count(); ++v) robots.insert(graph_.robot(v));
     summary_.robots = robots.size();
   }
 
@@ -109,13 +110,20 @@ class Summarizer {
       if (std::max(from, to) - std::min(from, to) == 1) ++summary_.consecutive_edges;
       if (from == to) {
         ++summary_.self_edges;
-        suspect("self edge", edge.line, "edge from vertex " + std::to_string(from) + " to itself");
+        suspect("self edge", edge.line, "edge from vertex " + vertex_name(from) + " to itself");
       }
     }
     summary_.other_edges = summary_.edges - summary_.consecutive_edges;
   }
 
   void find_repeats() {
+    for (const auto& repeat : exact_repeats(graph_)) {
+      ++summary_.exact_repeats;
+      suspect("repeated edge", constraint(repeat.edge).line,
+              "edge " + ends(constraint(repeat.edge)) + " says again what line " +
+                  std::to_string(constraint(repeat.original).line) +
+                  " says; both count as one measurement");
+    }
     std::vector<Index> order(graph_.constraints.size());
     std::iota(order.begin(), order.end(), 0);
     const auto pair_of = [this](Index k) {

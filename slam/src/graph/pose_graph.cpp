@@ -1,15 +1,14 @@
 #include "isotherm/slam/graph/pose_graph.hpp"
 
 #include <algorithm>
-#include <cstdlib>
+#include <cctype>
 
 #include "isotherm/base/error.hpp"
 
 namespace isotherm::slam {
 namespace {
 
-// GTSAM keys carry the robot's letter in the top byte.
-VertexId robot_of(VertexId id) { return id >> 56; }
+constexpr int kLetterShift = 56;  // GTSAM keys carry the robot's letter in the top byte
 
 }  // namespace
 
@@ -21,6 +20,23 @@ std::optional<Index> PoseGraph<Pose>::find(VertexId id) const {
 }
 
 template <class Pose>
+std::uint64_t PoseGraph<Pose>::robot(Index vertex) const {
+  return robots.empty() ? ids[vertex] >> kLetterShift : static_cast<std::uint64_t>(robots[vertex]);
+}
+
+std::string robot_letter(VertexId id) {
+  const auto letter = static_cast<unsigned char>(id >> kLetterShift);
+  if (letter > 127 || std::isalpha(letter) == 0) return {};
+  return {static_cast<char>(letter)};
+}
+
+std::string vertex_name(VertexId id) {
+  const auto letter = robot_letter(id);
+  if (letter.empty()) return std::to_string(id);
+  return letter + std::to_string(id & ((VertexId{1} << kLetterShift) - 1));
+}
+
+template <class Pose>
 EdgeRoles edge_roles(const PoseGraph<Pose>& graph) {
   EdgeRoles roles;
   std::vector<bool> step_taken(graph.ids.size(), false);
@@ -28,14 +44,12 @@ EdgeRoles edge_roles(const PoseGraph<Pose>& graph) {
     const auto& constraint = graph.constraints[k];
     const Index first = std::min(constraint.from, constraint.to);
     const Index second = std::max(constraint.from, constraint.to);
-    const bool neighbours =
-        second - first == 1 && robot_of(graph.ids[first]) == robot_of(graph.ids[second]);
-    if (neighbours && !step_taken[first]) {
-      step_taken[first] = true;
-      roles.odometry.push_back(k);
-    } else {
-      roles.candidates.push_back(k);
-    }
+    const bool neighbours = second - first == 1 && graph.robot(first) == graph.robot(second) &&
+                            constraint.link != LinkKind::loop;
+    const bool step = neighbours && !step_taken[first];
+    if (step) step_taken[first] = true;
+    const bool stated = constraint.link == LinkKind::odometry && !neighbours && second != first;
+    (step || stated ? roles.odometry : roles.candidates).push_back(k);
   }
   return roles;
 }
@@ -45,7 +59,7 @@ PoseGraph<Pose> filter_constraints(const PoseGraph<Pose>& graph, const std::vect
   if (keep.size() != graph.constraints.size()) {
     throw InvalidArgument("keep", "must have one entry per constraint");
   }
-  PoseGraph<Pose> kept{graph.ids, graph.poses, {}, graph.fixed};
+  PoseGraph<Pose> kept{graph.ids, graph.poses, {}, graph.fixed, graph.robots};
   for (std::size_t k = 0; k < keep.size(); ++k) {
     if (keep[k]) kept.constraints.push_back(graph.constraints[k]);
   }

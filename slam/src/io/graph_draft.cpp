@@ -1,11 +1,14 @@
 #include "io/graph_draft.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
 
 #include "io/information_check.hpp"
+#include "io/robot_files.hpp"
+#include "isotherm/slam/graph/repeats.hpp"
 #include "isotherm/spectral/graph/weighted_graph.hpp"
 
 namespace isotherm::slam {
@@ -14,53 +17,79 @@ namespace {
 template <class Pose>
 class Finisher {
  public:
-  Finisher(GraphDraft<Pose> draft, const ReadOptions& options, ReadReport& report)
-      : draft_(std::move(draft)), options_(options), report_(report) {}
+  Finisher(GraphDraft<Pose> draft, const std::vector<std::string>& paths,
+           const ReadOptions& options, ReadReport& report)
+      : draft_(std::move(draft)), paths_(paths), options_(options), report_(report) {}
 
   PoseGraph<Pose> run(const std::vector<FixedVertex>& fixed) {
     check_size();
     sort_vertices();
+    join_vertices();
     collect_ids();
     resolve_ends();
+    tell_robots_apart(graph_, owners_, draft_.ends_of_files);
     place_vertices();
     repair_information();
     resolve_fixed(fixed);
+    if (paths_.size() > 1) leave_out_repeats();
     return std::move(graph_);
   }
 
  private:
-  SourceLocation at(std::uint64_t line, std::uint64_t column = 0) const {
-    return {report_.path, line, column};
+  using Vertex = typename GraphDraft<Pose>::Vertex;
+
+  SourceLocation at(const Vertex& vertex) const { return {paths_[vertex.file], vertex.line, 0}; }
+
+  SourceLocation at(Index constraint, std::uint64_t column = 0) const {
+    const auto file = file_of(constraint, draft_.ends_of_files);
+    return {paths_[file], graph_.constraints[constraint].line, column};
   }
 
   // Positions are 32-bit; the ends of all edges must fit as well.
   void check_size() const {
     constexpr std::size_t kMost = std::numeric_limits<Index>::max() / 3;
     if (draft_.vertices.size() > kMost || draft_.constraints.size() > kMost) {
-      throw ParseError(at(0), "", "more than " + std::to_string(kMost) + " records");
+      throw ParseError({report_.path, 0, 0}, "", "more than " + std::to_string(kMost) + " records");
     }
   }
 
+  // Each file may have an order of its own.
   void sort_vertices() {
     auto& vertices = draft_.vertices;
-    const auto by_id = [](const auto& a, const auto& b) { return a.id < b.id; };
-    const auto out_of_place = std::is_sorted_until(vertices.begin(), vertices.end(), by_id);
+    const auto out_of_place = std::adjacent_find(
+        vertices.begin(), vertices.end(),
+        [](const auto& a, const auto& b) { return a.file == b.file && b.id < a.id; });
     if (out_of_place != vertices.end()) {
-      const auto previous = std::prev(out_of_place);
-      report_.add_repair(
-          options_,
-          {"vertices sorted", at(out_of_place->line), std::to_string(out_of_place->id),
-           "vertex id out of place after " + std::to_string(previous->id) + "; sorted by id"});
-      std::stable_sort(vertices.begin(), vertices.end(), by_id);
+      const auto& second = *std::next(out_of_place);
+      report_.add_repair(options_, {"vertices sorted", at(second), std::to_string(second.id),
+                                    "vertex id out of place after " +
+                                        vertex_name(out_of_place->id) + "; sorted by id"});
     }
-    const auto repeated =
-        std::adjacent_find(vertices.begin(), vertices.end(),
-                           [](const auto& a, const auto& b) { return a.id == b.id; });
+    std::stable_sort(vertices.begin(), vertices.end(),
+                     [](const auto& a, const auto& b) { return a.id < b.id; });
+    const auto repeated = std::adjacent_find(
+        vertices.begin(), vertices.end(),
+        [](const auto& a, const auto& b) { return a.id == b.id && a.file == b.file; });
     if (repeated != vertices.end()) {
-      const auto second = std::next(repeated);
-      throw ParseError(at(second->line), std::to_string(second->id),
+      const auto& second = *std::next(repeated);
+      throw ParseError(at(second), std::to_string(second.id),
                        "vertex already given at line " + std::to_string(repeated->line));
     }
+  }
+
+  // A vertex of several files is that of the first.
+  void join_vertices() {
+    const auto same = [this](const Vertex& kept, const Vertex& other) {
+      if (kept.id != other.id) return false;
+      if (!(kept.pose.inverse() * other.pose).log().isZero(1e-6)) {
+        report_.add_note({"vertex with two poses", at(other), std::to_string(other.id),
+                          "vertex " + vertex_name(other.id) + " has another pose than in " +
+                              paths_[kept.file] + ", which is taken"});
+      }
+      return true;
+    };
+    auto& vertices = draft_.vertices;
+    vertices.erase(std::unique(vertices.begin(), vertices.end(), same), vertices.end());
   }
 
   bool has_vertex_line(VertexId id) const {
@@ -70,8 +99,7 @@ class Finisher {
       const VertexId offset = id - vertices.front().id;
       if (offset < vertices.size() && vertices[offset].id == id) return true;
     }
-    return std::binary_search(vertices.begin(), vertices.end(),
-                              typename GraphDraft<Pose>::Vertex{id, 0, {}},
+    return std::binary_search(vertices.begin(), vertices.end(), Vertex{id, 0, {}, 0},
                               [](const auto& a, const auto& b) { return a.id < b.id; });
   }
 
@@ -87,22 +115,26 @@ class Finisher {
     missing.shrink_to_fit();
 
     if (draft_.vertices.empty()) {
+      owners_.assign(missing.size(), kNoFile);
       graph_.ids = std::move(missing);
       return;
     }
     const std::size_t count = draft_.vertices.size() + missing.size();
     graph_.ids.reserve(count);
     graph_.poses.reserve(count);
+    owners_.reserve(count);
     auto next = missing.begin();
     const auto add_missing = [&] {
       missing_.push_back(graph_.vertex_count());
       graph_.ids.push_back(*next++);
       graph_.poses.emplace_back();
+      owners_.push_back(kNoFile);
     };
     for (const auto& vertex : draft_.vertices) {
       while (next != missing.end() && *next < vertex.id) add_missing();
       graph_.ids.push_back(vertex.id);
       graph_.poses.push_back(vertex.pose);
+      owners_.push_back(vertex.file);
     }
     while (next != missing.end()) add_missing();
     draft_.vertices = {};
@@ -166,15 +198,17 @@ class Finisher {
                                                           : known * constraint.T_from_to.inverse();
       placed[neighbour] = true;
       queue.push_back(neighbour);
-      report_.add_repair(
-          options_, {"vertex placed", at(constraint.line), std::to_string(graph_.ids[neighbour]),
-                     "vertex has no line of its own; placed by this edge"});
+      report_.add_repair(options_,
+                         {"vertex placed", at(edge), std::to_string(graph_.ids[neighbour]),
+                          "vertex has no line of its own; placed by this edge"});
     }
   }
 
   void place_at_origin(Index vertex) {
     report_.add_repair(options_,
-                       {"vertex placed", at(0), std::to_string(graph_.ids[vertex]),
+                       {"vertex placed",
+                        {report_.path, 0, 0},
+                        std::to_string(graph_.ids[vertex]),
                         "vertex has no line of its own and no edge leads to it from one that has; "
                         "placed at the origin"});
   }
@@ -197,15 +231,16 @@ class Finisher {
       auto& constraint = graph_.constraints[k];
       const std::string kind = is_odometry[k] ? "odometry" : "loop";
       if (!source) {
-        throw ParseError(at(constraint.line, column), token,
+        throw ParseError(at(static_cast<Index>(k), column), token,
                          "information matrix is not positive semi-definite, and no edge has one "
                          "that could stand in");
       }
-      report_.add_repair(options_, {"information replaced", at(constraint.line, column), token,
-                                    "information matrix of this " + kind +
-                                        " edge is not positive semi-definite; replaced by the "
-                                        "median, from line " +
-                                        std::to_string(graph_.constraints[*source].line)});
+      report_.add_repair(options_,
+                         {"information replaced", at(static_cast<Index>(k), column), token,
+                          "information matrix of this " + kind +
+                              " edge is not positive semi-definite; replaced by the "
+                              "median, from line " +
+                              std::to_string(graph_.constraints[*source].line)});
       constraint.information = graph_.constraints[*source].information;
     }
   }
@@ -235,24 +270,93 @@ class Finisher {
     graph_.fixed.erase(std::unique(graph_.fixed.begin(), graph_.fixed.end()), graph_.fixed.end());
   }
 
+  // What two robots share stands in the files of both.
+  void leave_out_repeats() {
+    const auto repeats = exact_repeats(graph_);
+    if (repeats.empty()) return;
+    std::vector<bool> keep(graph_.constraints.size(), true);
+    for (const auto& [edge, original] : repeats) {
+      keep[edge] = false;
+      const auto first = at(original);
+      report_.add_note({"repeated edge", at(edge), "",
+                        "edge repeats line " + std::to_string(first.line) + " of " + first.path +
+                            " to the last digit; counted once"});
+    }
+    graph_ = filter_constraints(graph_, keep);
+  }
+
   GraphDraft<Pose> draft_;
+  const std::vector<std::string>& paths_;
   const ReadOptions& options_;
   ReadReport& report_;
   PoseGraph<Pose> graph_;
-  std::vector<Index> missing_;  // vertices without a line, where others have one
+  std::vector<Index> missing_;         // vertices without a line, where others have one
+  std::vector<std::uint32_t> owners_;  // the file that each vertex belongs to
 };
+
+template <class Value>
+void move_to(std::vector<Value>& all, std::vector<Value>& more) {
+  if (all.empty()) return all.swap(more);
+  all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+template <class Pose>
+void append(GraphDraft<Pose>& draft, GraphDraft<Pose>& next, std::uint32_t file) {
+  const std::size_t before = draft.constraints.size();
+  draft.ends_of_files.push_back(before);
+  for (auto& vertex : next.vertices) vertex.file = file;
+  for (auto& suspect : next.indefinite) suspect.constraint += before;
+  move_to(draft.vertices, next.vertices);
+  move_to(draft.constraints, next.constraints);
+  move_to(draft.end_ids, next.end_ids);
+  move_to(draft.indefinite, next.indefinite);
+}
+
+void append(ReadReport& report, ReadReport& next) {
+  const auto add = [](auto& counts, const auto& more) {
+    for (const auto& [kind, times] : more) counts[kind] += times;
+  };
+  report.path += ", " + next.path;
+  if (report.format != next.format) report.format += ", " + next.format;
+  report.lines += next.lines;
+  add(report.records, next.records);
+  add(report.skipped, next.skipped);
+  add(report.repairs, next.repairs);
+  add(report.notes, next.notes);
+  move_to(report.diagnostics, next.diagnostics);
+}
 
 }  // namespace
 
-template <class Pose>
-PoseGraph<Pose> finish_graph(GraphDraft<Pose> draft, const std::vector<FixedVertex>& fixed,
-                             const ReadOptions& options, ReadReport& report) {
-  return Finisher<Pose>(std::move(draft), options, report).run(fixed);
+void append(FileDraft& draft, FileDraft next) {
+  if (draft.planar.empty() != next.planar.empty()) {
+    throw ParseError({next.report.path, 0, 0}, "",
+                     std::string("has poses in ") + (next.planar.empty() ? "space" : "the plane") +
+                         ", unlike " + draft.report.path);
+  }
+  const auto file = static_cast<std::uint32_t>(draft.paths.size());
+  append(draft.planar, next.planar, file);
+  append(draft.spatial, next.spatial, file);
+  move_to(draft.fixed, next.fixed);
+  move_to(draft.other_lines, next.other_lines);
+  move_to(draft.paths, next.paths);
+  append(draft.report, next.report);
 }
 
-template PoseGraph<Pose2> finish_graph(GraphDraft<Pose2>, const std::vector<FixedVertex>&,
-                                       const ReadOptions&, ReadReport&);
-template PoseGraph<Pose3> finish_graph(GraphDraft<Pose3>, const std::vector<FixedVertex>&,
-                                       const ReadOptions&, ReadReport&);
+PoseGraphFile finish(FileDraft draft, const ReadOptions& options) {
+  PoseGraphFile file;
+  file.report = std::move(draft.report);
+  file.other_lines = std::move(draft.other_lines);
+  const auto finished = [&](auto& graph) {
+    return Finisher(std::move(graph), draft.paths, options, file.report).run(draft.fixed);
+  };
+  if (draft.spatial.empty()) {
+    file.graph = finished(draft.planar);
+  } else {
+    file.graph = finished(draft.spatial);
+  }
+  file.paths = std::move(draft.paths);
+  return file;
+}
 
 }  // namespace isotherm::slam

@@ -7,10 +7,11 @@
 
 #include "isotherm/base/read_report.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
+#include "isotherm/slam/io/pose_graph_file.hpp"
 
 namespace isotherm::slam {
 
-/// What the lines of a file say, before ids become positions: a file may name a
+/// What the lines of files say, before ids become positions: a file may name a
 /// vertex in an edge before, or without, its own line.
 template <class Pose>
 struct GraphDraft {
@@ -18,6 +19,7 @@ struct GraphDraft {
     VertexId id = 0;
     std::uint64_t line = 0;
     Pose pose;
+    std::uint32_t file = 0;
   };
   struct Suspect {
     std::size_t constraint = 0;
@@ -29,6 +31,7 @@ struct GraphDraft {
   std::vector<Constraint<Pose>> constraints;           // ends not set
   std::vector<std::pair<VertexId, VertexId>> end_ids;  // one a constraint
   std::vector<Suspect> indefinite;                     // not positive semi-definite
+  std::vector<std::size_t> ends_of_files = {};         // of all but the last: constraints so far
 
   bool empty() const noexcept { return vertices.empty() && constraints.empty(); }
 };
@@ -39,12 +42,28 @@ struct FixedVertex {
   SourceLocation where;
 };
 
-/// Turns ids into positions, places vertices without a line, and repairs
-/// information matrices, all of it counted in `report`.
+/// All that one file, or several, have.
+struct FileDraft {
+  GraphDraft<Pose2> planar;
+  GraphDraft<Pose3> spatial;
+  std::vector<FixedVertex> fixed;
+  std::vector<std::string> other_lines;
+  ReadReport report;
+  std::vector<std::string> paths;
+};
+
+/// Reads what a file says, in one pass.
+/// @throws ParseError if it is malformed or empty
+FileDraft read_draft(TextReader& reader, FileFormat format, const ReadOptions& options);
+
+/// Adds what `next`, a single file, has: vertices of the same id are the same.
+/// @throws ParseError if one has planar poses and the other spatial ones
+void append(FileDraft& draft, FileDraft next);
+
+/// Turns ids into positions, places vertices without a line, repairs information
+/// matrices, and tells robots apart by their files, all of it counted in the report.
 /// @throws ParseError for repeated vertices, unknown fixed ones, or a repair
 ///   under `options.strict`.
-template <class Pose>
-PoseGraph<Pose> finish_graph(GraphDraft<Pose> draft, const std::vector<FixedVertex>& fixed,
-                             const ReadOptions& options, ReadReport& report);
+PoseGraphFile finish(FileDraft draft, const ReadOptions& options);
 
 }  // namespace isotherm::slam

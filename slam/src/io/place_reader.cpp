@@ -14,6 +14,7 @@ class PlaceReader {
  public:
   explicit PlaceReader(TextReader& text) : text_(text) {
     file_.report.path = text.path();
+    file_.paths = {text.path()};
     file_.report.format = "places";
   }
 

@@ -8,17 +8,29 @@
 
 #include "io/graph_draft.hpp"
 #include "io/information_check.hpp"
-#include "io/place_reader.hpp"
 #include "io/pose_fields.hpp"
+#include "io/unused_records.hpp"
 #include "isotherm/slam/io/file_format.hpp"
-#include "isotherm/slam/io/pose_graph_file.hpp"
 
 namespace isotherm::slam {
 namespace {
 
-enum class Tag { vertex_se2, vertex_se3, edge_se2, edge_se3, fix, vertex2, vertex3, edge2, edge3 };
+enum class Tag {
+  vertex_se2,
+  vertex_se3,
+  edge_se2,
+  edge_se3,
+  fix,
+  vertex2,
+  vertex3,
+  edge2,
+  edge3,
+  switchable_se2,
+  switchable_se3,
+  mixture_se2,
+};
 
-constexpr std::array<std::pair<std::string_view, Tag>, 9> kTags = {{
+constexpr std::array<std::pair<std::string_view, Tag>, 12> kTags = {{
     {"EDGE_SE3:QUAT", Tag::edge_se3},
     {"EDGE_SE2", Tag::edge_se2},
     {"VERTEX_SE3:QUAT", Tag::vertex_se3},
@@ -28,7 +40,13 @@ constexpr std::array<std::pair<std::string_view, Tag>, 9> kTags = {{
     {"EDGE3", Tag::edge3},
     {"VERTEX2", Tag::vertex2},
     {"VERTEX3", Tag::vertex3},
+    {"EDGE_SE2_SWITCHABLE", Tag::switchable_se2},
+    {"EDGE_SE3_SWITCHABLE", Tag::switchable_se3},
+    {"EDGE_SE2_MAXMIX", Tag::mixture_se2},
 }};
+
+// The last links that rtabmap numbers: 0 and 6 are odometry, between them are loops.
+constexpr std::uint64_t kLastLinkType = 6;
 
 // Entries (row, column) of an information matrix in the order of a line.
 template <int kDof>
@@ -73,9 +91,10 @@ class PoseGraphReader {
         untagged_(format == FileFormat::edge_rows),
         named_(format == FileFormat::pyfg) {
     file_.report.path = text.path();
+    file_.paths = {text.path()};
   }
 
-  PoseGraphFile run() {
+  FileDraft run() {
     while (text_.next_line()) read_line();
     finish();
     return std::move(file_);
@@ -99,34 +118,71 @@ class PoseGraphReader {
   void read_known(Tag tag) {
     ++counts_[static_cast<std::size_t>(tag)];
     read_record(tag);
+    if (tag == Tag::edge_se2 || tag == Tag::switchable_se2) read_link_type(file_.planar);
+    if (tag == Tag::edge_se3 || tag == Tag::switchable_se3) read_link_type(file_.spatial);
     text_.expect_line_end();
+  }
+
+  // rtabmap ends its edges with the type of the link.
+  template <class Pose>
+  void read_link_type(GraphDraft<Pose>& draft) {
+    if (untagged_ || named_ || text_.at_line_end()) return;
+    std::uint64_t type = 0;
+    const auto token = text_.word();
+    if (!parse_unsigned(token, type) || type > kLastLinkType) {
+      text_.fail("expected the end of the line, or a link type from 0 to " +
+                 std::to_string(kLastLinkType));
+    }
+    const bool odometry = type == 0 || type == kLastLinkType;
+    draft.constraints.back().link = odometry ? LinkKind::odometry : LinkKind::loop;
+  }
+
+  // An edge that other programs may switch off, or hold against a wider one, is a loop.
+  // What they start its switch or weight at is no measurement.
+  template <class Pose, class ReadPose>
+  void switchable(GraphDraft<Pose>& draft, const ReadPose& read_pose) {
+    file_.report.add_note({"switchable edge", text_.location(), "",
+                           "switchable edge; read as a loop without its switch"});
+    edge(
+        draft,
+        [&] {
+          text_.number("a switch or a weight");
+          return read_pose();
+        },
+        upper_triangle_by_rows<Pose::kDof>());
+    draft.constraints.back().link = LinkKind::loop;
   }
 
   void read_record(Tag tag) {
     switch (tag) {
       case Tag::vertex_se2:
       case Tag::vertex2:
-        return vertex(planar_, [this] { return fields_.planar(); });
+        return vertex(file_.planar, [this] { return fields_.planar(); });
       case Tag::vertex_se3:
-        return vertex(spatial_, [this] { return fields_.spatial(); });
+        return vertex(file_.spatial, [this] { return fields_.spatial(); });
       case Tag::vertex3:
-        return vertex(spatial_, [this] { return fields_.spatial_euler(); });
+        return vertex(file_.spatial, [this] { return fields_.spatial_euler(); });
       case Tag::edge_se2:
         return edge(
-            planar_, [this] { return fields_.planar(); }, kG2oOrder2);
+            file_.planar, [this] { return fields_.planar(); }, kG2oOrder2);
       case Tag::edge2:
         return edge(
-            planar_, [this] { return fields_.planar(); }, kToroOrder2);
+            file_.planar, [this] { return fields_.planar(); }, kToroOrder2);
       case Tag::edge_se3:
         return edge(
-            spatial_, [this] { return fields_.spatial(); }, kG2oOrder3);
+            file_.spatial, [this] { return fields_.spatial(); }, kG2oOrder3);
       case Tag::edge3:
         return edge(
-            spatial_, [this] { return fields_.spatial_euler(); }, kG2oOrder3);
+            file_.spatial, [this] { return fields_.spatial_euler(); }, kG2oOrder3);
+      case Tag::switchable_se2:
+      case Tag::mixture_se2:
+        return switchable(file_.planar, [this] { return fields_.planar(); });
+      case Tag::switchable_se3:
+        return switchable(file_.spatial, [this] { return fields_.spatial(); });
       case Tag::fix:
         do {
           const VertexId id = vertex_id("a vertex id");
-          fixed_.push_back({id, text_.location()});
+          file_.fixed.push_back({id, text_.location()});
         } while (!text_.at_line_end());
     }
   }
@@ -137,12 +193,19 @@ class PoseGraphReader {
     if (std::isalpha(static_cast<unsigned char>(tag.front())) == 0) {
       text_.fail("expected a record tag such as VERTEX_SE2 or EDGE_SE3:QUAT");
     }
+    if (tag == "VERTEX_SWITCH" || tag == "EDGE_SWITCH_PRIOR") {
+      ++file_.report.skipped[std::string(tag)];
+      return;  // said with the edges that they belong to
+    }
     auto& skipped = file_.report.skipped;
     std::string name(tag.substr(0, kLongestTag));
     if (skipped.size() >= kMostTags && skipped.count(name) == 0) name = "(other)";
     if (skipped[name]++ == 0) {
-      file_.report.add_note({"unknown record", text_.location(), std::string(tag),
-                             "unknown record; kept as it stands but not used"});
+      const auto known = unused_record(tag);
+      file_.report.add_note({known.empty() ? "unknown record" : "unused " + name, text_.location(),
+                             std::string(tag),
+                             (known.empty() ? "unknown record" : std::string(known)) +
+                                 "; kept as it stands but not used"});
     }
     if (!named_) keep_line();
   }
@@ -191,7 +254,7 @@ class PoseGraphReader {
 
   template <class Pose>
   void check_dimension() const {
-    const bool mixed = Pose::kDim == 2 ? !spatial_.empty() : !planar_.empty();
+    const bool mixed = Pose::kDim == 2 ? !file_.spatial.empty() : !file_.planar.empty();
     if (mixed) {
       text_.fail(Pose::kDim == 2 ? "planar record in a file of spatial poses"
                                  : "spatial record in a file of planar poses");
@@ -265,7 +328,7 @@ class PoseGraphReader {
       if (count > 0) report.records[std::string(name)] = count;
     }
     fields_.finish();
-    if (planar_.empty() && spatial_.empty()) {
+    if (file_.planar.empty() && file_.spatial.empty()) {
       const std::string start = report.lines == 0 ? "the file is empty" : "no vertex and no edge";
       const bool unknown = !report.diagnostics.empty();
       throw ParseError(
@@ -279,20 +342,12 @@ class PoseGraphReader {
                           counts_[static_cast<std::size_t>(Tag::edge3)] >
                       0;
     report.format = named_ ? "pyfg" : untagged_ ? "edge-rows" : toro ? "toro" : "g2o";
-    if (spatial_.empty()) {
-      file_.graph = finish_graph(std::move(planar_), fixed_, options_, report);
-    } else {
-      file_.graph = finish_graph(std::move(spatial_), fixed_, options_, report);
-    }
   }
 
   TextReader& text_;
   const ReadOptions& options_;
-  PoseGraphFile file_;
+  FileDraft file_;
   PoseFields fields_;
-  GraphDraft<Pose2> planar_;
-  GraphDraft<Pose3> spatial_;
-  std::vector<FixedVertex> fixed_;
   bool untagged_;  // every line is an EDGE_SE2 without its tag
   bool named_;     // PyFG: time stamps, names for ids, covariances
   std::size_t kept_bytes_ = 0;
@@ -302,19 +357,8 @@ class PoseGraphReader {
 
 }  // namespace
 
-PoseGraphFile read_pose_graph(TextReader& reader, const ReadOptions& options) {
-  return read_pose_graph(reader, detect_format(reader), options);
-}
-
-PoseGraphFile read_pose_graph(TextReader& reader, FileFormat format, const ReadOptions& options) {
-  options.validate();
-  if (format == FileFormat::places) return read_places(reader);
+FileDraft read_draft(TextReader& reader, FileFormat format, const ReadOptions& options) {
   return PoseGraphReader(reader, format, options).run();
-}
-
-PoseGraphFile read_pose_graph(const std::string& path, const ReadOptions& options) {
-  TextReader reader(path);
-  return read_pose_graph(reader, options);
 }
 
 }  // namespace isotherm::slam

@@ -40,11 +40,13 @@ MinimizeSummary minimize(NormalEquations<Pose>& equations, const EdgeCost& edge_
 template <class Pose>
 Eigen::VectorXd gauss_newton_step(NormalEquations<Pose>& equations);
 
-/// `graph` checked, with information matrices made semi-definite.
+/// `graph` checked, with information matrices made semi-definite and those of exact repeats
+/// zero.
 template <class Pose>
 struct PreparedGraph {
   PoseGraph<Pose> graph;
   Index projected_information = 0;  ///< how many matrices had a negative eigenvalue
+  Index repeats = 0;
 };
 
 /// @throws InvalidArgument for indices out of range or entries that are not finite.

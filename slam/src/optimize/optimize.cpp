@@ -135,6 +135,7 @@ OptimizeResult<Pose> optimize(const PoseGraph<Pose>& graph, const EdgeRoles& rol
   result.components = equations.gauge().component_count;
   result.held = equations.gauge().held;
   result.projected_information = prepared.projected_information;
+  result.repeats = prepared.repeats;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "isotherm/base/error.hpp"
+#include "isotherm/slam/graph/repeats.hpp"
 #include "optimize/minimize.hpp"
 
 namespace isotherm::slam {
@@ -36,7 +37,7 @@ bool make_semidefinite(Matrix& information) {
 
 template <class Pose>
 PreparedGraph<Pose> prepare(const PoseGraph<Pose>& graph) {
-  PreparedGraph<Pose> prepared{graph, 0};
+  PreparedGraph<Pose> prepared{graph, 0, 0};
   const auto in_range = [&](Index vertex) { return vertex >= 0 && vertex < graph.vertex_count(); };
   for (const Index vertex : graph.fixed) {
     if (!in_range(vertex)) throw InvalidArgument("graph", "a fixed vertex does not exist");
@@ -54,6 +55,9 @@ PreparedGraph<Pose> prepare(const PoseGraph<Pose>& graph) {
     }
     if (make_semidefinite(constraint.information)) ++prepared.projected_information;
   }
+  const auto repeats = exact_repeats(graph);
+  for (const auto& repeat : repeats) prepared.graph.constraints[repeat.edge].information.setZero();
+  prepared.repeats = static_cast<Index>(repeats.size());
   return prepared;
 }
 

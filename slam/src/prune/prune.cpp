@@ -3,9 +3,9 @@
 #include <chrono>
 #include <utility>
 
-#include "graph/candidate_verdicts.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/slam/graph/usable_odometry.hpp"
+#include "prune/set_aside.hpp"
 
 namespace isotherm::slam {
 namespace {
@@ -15,55 +15,6 @@ using spectral::EdgeVerdicts;
 template <std::size_t... kMethods>
 std::vector<PruneOptions> one_of_each(std::index_sequence<kMethods...>) {
   return {PruneOptions(std::in_place_index<kMethods>)...};
-}
-
-// Takes the candidates that join a vertex with itself out of `roles`: whatever they
-// measure, they say nothing about where two poses lie.
-template <class Pose>
-std::vector<Index> take_self_edges(const PoseGraph<Pose>& graph, EdgeRoles& roles) {
-  std::vector<Index> self_edges;
-  std::erase_if(roles.candidates, [&](Index k) {
-    const bool own = graph.constraints[k].from == graph.constraints[k].to;
-    if (own) self_edges.push_back(k);
-    return own;
-  });
-  return self_edges;
-}
-
-// Gives self-edges their rows among those of the candidates, in order of the edges.
-template <class Pose>
-void set_aside(const PoseGraph<Pose>& graph, const std::vector<Index>& self_edges,
-               PruneResult& result) {
-  auto own = candidate_verdicts(graph, {{}, self_edges});
-  for (auto& row : own) {
-    row.verdict = spectral::Verdict::ambiguous;
-    row.stage = "self-edge";
-  }
-  const bool detailed = !result.consensus.details.empty();
-  EdgeVerdicts rows;
-  std::vector<ConsensusDetail> details;
-  std::vector<Index> place;  // of the candidates that were judged
-  auto next = own.begin();
-  for (std::size_t k = 0; k <= result.verdicts.size(); ++k) {
-    const bool last = k == result.verdicts.size();
-    while (next != own.end() && (last || next->edge < result.verdicts[k].edge)) {
-      rows.push_back(std::move(*next++));
-      details.emplace_back();
-    }
-    if (last) break;
-    place.push_back(static_cast<Index>(rows.size()));
-    rows.push_back(std::move(result.verdicts[k]));
-    if (detailed) details.push_back(std::move(result.consensus.details[k]));
-  }
-  result.verdicts = std::move(rows);
-  if (detailed) {
-    for (auto& detail : details) {
-      for (Index& conflict : detail.conflicts) conflict = place[conflict];
-    }
-    result.consensus.details = std::move(details);
-  }
-  result.warnings.push_back(std::to_string(self_edges.size()) +
-                            " edges join a vertex with itself; they are set aside");
 }
 
 }  // namespace
@@ -96,7 +47,7 @@ PruneResult prune(const PoseGraph<Pose>& graph, const EdgeRoles& roles, const Pr
                   const RunContext& run) {
   const auto start = std::chrono::steady_clock::now();
   EdgeRoles judged = roles;
-  const auto self_edges = take_self_edges(graph, judged);
+  const SetAside set_aside(graph, judged);
   const auto judge = [&](const PoseGraph<Pose>& usable) {
     return std::visit([&](const auto& own) { return detail::prune_by(usable, judged, own, run); },
                       options);
@@ -107,7 +58,7 @@ PruneResult prune(const PoseGraph<Pose>& graph, const EdgeRoles& roles, const Pr
   if (!unusable.empty()) {
     result.warnings.push_back(describe_unusable(graph, unusable) + "; made less extreme");
   }
-  if (!self_edges.empty()) set_aside(graph, self_edges, result);
+  set_aside.return_to(result);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

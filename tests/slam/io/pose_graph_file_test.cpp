@@ -86,6 +86,57 @@ void expect_round_trip(const AnyPoseGraph& graph) {
       graph);
 }
 
+TEST(ReadPoseGraph, SwitchableEdgesAreLoops) {
+  const auto file = parse_graph(
+      "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nVERTEX_SE2 2 2 0 0\nVERTEX_SWITCH 3 1\n"
+      "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SWITCH_PRIOR 3 1 1.0\n"
+      "EDGE_SE2_SWITCHABLE 0 2 3 2 0 0.5 4 0 0 4 0 9\n"
+      "EDGE_SE2_SWITCHABLE 1 2 4 1 0 0.5 4 0 0 4 0 9\n"
+      "EDGE_SE2_MAXMIX 0 2 0.01 2 0 0.5 4 0 0 4 0 9\n");
+  const auto graph = std::get<PoseGraph<Pose2>>(file.graph);
+  ASSERT_EQ(graph.constraint_count(), 4);
+  EXPECT_THAT(edge_roles(graph).candidates, ElementsAre(1, 2, 3)) << "even between neighbours";
+  EXPECT_EQ(graph.constraints[1].T_from_to.translation().x(), 2.0);
+  EXPECT_EQ(graph.constraints[1].T_from_to.angle(), 0.5);
+  EXPECT_EQ(graph.constraints[1].information(2, 2), 9.0);
+  EXPECT_THAT(file.report.notes, ElementsAre(Pair("switchable edge", 3)));
+  EXPECT_THAT(file.report.skipped,
+              ElementsAre(Pair("EDGE_SWITCH_PRIOR", 1), Pair("VERTEX_SWITCH", 1)));
+  EXPECT_THAT(file.other_lines, IsEmpty()) << "switches of edges that are no longer theirs";
+  const auto space = spatial(
+      "EDGE_SE3:QUAT 0 1 1 0 0 0 0 0 1 1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 1 0 0 1 0 1\n"
+      "EDGE_SE3_SWITCHABLE 0 1 7 2 0 0 0 0 0 1 1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 1 0 0 1 0 1\n");
+  EXPECT_EQ(space.constraints[1].T_from_to.translation().x(), 2.0);
+  EXPECT_EQ(graph_error("EDGE_SE2_SWITCHABLE 0 2 x 2 0 0 4 0 0 4 0 9\n"),
+            "f.g2o:1:25: expected a switch or a weight, a finite number (got 'x')");
+}
+
+TEST(ReadPoseGraph, LinkTypesSayWhatIsOdometry) {
+  const auto graph = planar(
+      "EDGE_SE2 1 2 1 0 0 1 0 0 1 0 1 0\nEDGE_SE2 2 3 1 0 0 1 0 0 1 0 1 1\n"
+      "EDGE_SE2 2 3 1 0 0 1 0 0 1 0 1 0\nEDGE_SE2 3 1 1 0 0 1 0 0 1 0 1 6\n"
+      "EDGE_SE2 1 3 1 0 0 1 0 0 1 0 1 4\nEDGE_SE2 1 2 1 0 0 1 0 0 1 0 1 0\n"
+      "EDGE_SE2 3 4 1 0 0 1 0 0 1 0 1\n");
+  const auto roles = edge_roles(graph);
+  EXPECT_THAT(roles.odometry, ElementsAre(0, 2, 3, 6));
+  EXPECT_THAT(roles.candidates, ElementsAre(1, 4, 5));
+  for (const char* type : {"7", "-1", "0.5", "1 1"}) {
+    EXPECT_THAT(graph_error(std::string("EDGE_SE2 1 2 1 0 0 1 0 0 1 0 1 ") + type + "\n"),
+                testing::HasSubstr("expected the end of the line"));
+  }
+}
+
+TEST(ReadPoseGraph, NamesWhatIsNotUsed) {
+  const auto report = parse_graph(
+                          "VERTEX_SE2 0 0 0 0\nVERTEX_XY 1 2 3\nVERTEX_XY 2 2 3\n"
+                          "EDGE_PRIOR_SE2 0 0 0 0 1 0 0 1 0 1\nODD 1\n")
+                          .report;
+  EXPECT_THAT(report.notes, ElementsAre(Pair("unknown record", 1), Pair("unused EDGE_PRIOR_SE2", 1),
+                                        Pair("unused VERTEX_XY", 1)));
+  EXPECT_EQ(report.diagnostics[0].message, "a landmark; kept as it stands but not used");
+  EXPECT_EQ(report.diagnostics[1].message, "a prior on a pose; kept as it stands but not used");
+}
+
 TEST(ReadPoseGraph, PlanarRecords) {
   const auto graph = planar(
       "# comment\n"

@@ -195,6 +195,16 @@ TYPED_TEST(Optimize, ALoopToItselfCountsAndMovesNothing) {
   EXPECT_LT(worst_difference(with.poses, without.poses), 1e-5);
 }
 
+TYPED_TEST(Optimize, ARepeatedConstraintCountsOnce) {
+  auto graph = random_loop_graph<TypeParam>(this->random, 30, 8, 1.0).graph;
+  const auto once = optimize(graph);
+  for (Index k = 5; k < 33; ++k) graph.constraints.push_back(graph.constraints[k]);
+  const auto twice = optimize(graph);
+  EXPECT_EQ(twice.repeats, 28);
+  EXPECT_NEAR(twice.final_cost, once.final_cost, 1e-9 * once.final_cost);
+  EXPECT_LT(worst_difference(once.poses, twice.poses), 1e-6);
+}
+
 TYPED_TEST(Optimize, ZeroInformationJoinsAndMovesNothing) {
   using Pose = TypeParam;
   auto [graph, truth] = random_loop_graph<Pose>(this->random, 10, 5, 1.0);

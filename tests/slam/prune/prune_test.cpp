@@ -64,6 +64,32 @@ TEST(Prune, SelfEdgesAreSetAsideByEveryMethod) {
   }
 }
 
+TEST(Prune, ARepeatIsNoEvidenceAndHasTheVerdictOfItsOriginal) {
+  auto city = simulate_city({.poses = 300, .measurements = {.loops = 60}, .seed = 3}).graph;
+  for (auto& constraint : city.constraints) constraint.line = 0;
+  const auto roles = edge_roles(city);
+  auto repeated = city;
+  for (const Index k : roles.candidates) repeated.constraints.push_back(city.constraints[k]);
+  repeated.constraints.push_back(city.constraints[roles.odometry.front()]);
+  for (const auto& method : prune_methods()) {
+    const auto name = method_name(method);
+    const auto once = prune(city, method).verdicts;
+    const auto result = prune(repeated, method);
+    ASSERT_EQ(result.verdicts.size(), 2 * once.size() + 1) << name;
+    EXPECT_EQ(result.verdicts.back().verdict, Verdict::keep) << name << ": repeats odometry";
+    EXPECT_EQ(result.verdicts.back().stage, "repeat") << name;
+    for (std::size_t k = 0; k < once.size(); ++k) {
+      const auto& copy = result.verdicts[once.size() + k];
+      EXPECT_EQ(result.verdicts[k].verdict, once[k].verdict) << name;
+      EXPECT_EQ(result.verdicts[k].score, once[k].score) << name;
+      EXPECT_EQ(copy.verdict, once[k].verdict) << name;
+      EXPECT_EQ(copy.score, once[k].score) << name;
+      EXPECT_EQ(copy.stage, "repeat") << name;
+    }
+    EXPECT_NE(result.warnings.back().find("61 edges repeat another one"), std::string::npos);
+  }
+}
+
 TEST(Prune, LoopsBetweenChainsThatMeetEachInOneVertex) {
   for (const Index length : {1, 2, 2001}) {
     PoseGraph<Pose2> graph;

@@ -35,7 +35,8 @@ template <class Pose>
 InducedGraph induce(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                     const InductionOptions& options, const RunContext& run) {
   options.validate();
-  std::vector<double> weight(graph.constraints.size(), options.odometry_weight);
+  std::vector<double> weight(graph.constraints.size(), 0.0);
+  for (const Index k : roles.odometry) weight[k] = options.odometry_weight;
   const auto candidate_weight = candidate_weights(graph, roles, options, run);
   for (std::size_t c = 0; c < candidate_weight.size(); ++c) {
     weight[roles.candidates[c]] = candidate_weight[c];

@@ -51,9 +51,10 @@ struct GraphSummary {
   std::uint64_t consecutive_edges = 0;  ///< ends differ by 1, repeats included
   std::uint64_t other_edges = 0;        ///< every other edge
   std::uint64_t repeated_edges = 0;     ///< beyond the first of their pair, in either direction
+  std::uint64_t exact_repeats = 0;      ///< of these, those equal to the last digit
   std::uint64_t self_edges = 0;
   std::uint64_t fixed = 0;
-  std::uint64_t robots = 0;  ///< different top bytes of ids
+  std::uint64_t robots = 0;  ///< by PoseGraph::robot()
   bool has_poses = false;
   std::uint64_t components = 0;
   std::uint64_t largest_component = 0;  ///< vertices in it

@@ -24,6 +24,7 @@ struct PoseGraphFile {
   ReadReport report;
   /// Comments and records of kinds this library does not know, as they stand.
   std::vector<std::string> other_lines;
+  std::vector<std::string> paths;  ///< of the files that it was read from
 
   // A file is its graph where a graph is asked for.
   operator const AnyPoseGraph&() const& { return graph; }
@@ -41,6 +42,25 @@ struct PoseGraphFile {
 ///   empty, holds poses of both dimensions, or needs a repair and
 ///   `options.strict` is set.
 PoseGraphFile read_pose_graph(const std::string& path, const ReadOptions& options = {});
+
+/// Reads several files as one graph, in their order: vertices of the same id are the same
+/// pose, that of the first file which has a line for it; a constraint that repeats another
+/// one to the last digit (see exact_repeats()) is left out and noted. Where ids have no
+/// letters, each file with vertices of its own is a robot (PoseGraph::robots).
+/// @throws as read_pose_graph(), and ParseError for files without ids or poses of different
+///   dimensions
+PoseGraphFile read_pose_graphs(const std::vector<std::string>& paths,
+                               const ReadOptions& options = {});
+
+/// A robot and how many vertices are its own.
+struct Robot {
+  std::string name;  ///< the letter of GTSAM's keys, or the name of the file without suffix
+  std::uint64_t vertices = 0;
+};
+
+/// The robots of a graph, in the order of their first vertices; empty where ids and files
+/// name none.
+std::vector<Robot> robots_of(const PoseGraphFile& file);
 
 /// The same from a reader that stands at the start of its input.
 PoseGraphFile read_pose_graph(TextReader& reader, const ReadOptions& options = {});

@@ -88,7 +88,10 @@ struct OptimizeSummary {
   Index components = 0;     ///< connected components, each with its own gauge
   std::vector<Index> held;  ///< vertices that were not moved: the gauge
   Index projected_information = 0;  ///< information matrices with a negative eigenvalue
-  double seconds = 0.0;             ///< wall clock
+  /// Constraints that repeat another one to the last digit: it counts for them, their own
+  /// chi2 is 0.
+  Index repeats = 0;
+  double seconds = 0.0;  ///< wall clock
 };
 
 /// What an optimisation found, and how well.
