@@ -120,7 +120,9 @@ struct Report {
 
   std::vector<std::uint64_t> node_ids;  ///< or `node_names`; one a node
   std::vector<std::string> node_names;
-  std::vector<std::int32_t> landmarks;  ///< nodes that do not move
+  std::vector<std::int32_t> landmarks;   ///< nodes that do not move
+  std::vector<std::string> robot_names;  ///< empty unless there are several robots
+  std::vector<std::int32_t> robots;      ///< of each node, a position in `robot_names`
   std::vector<ReportColumn> node_columns;
   std::vector<float> path;            ///< metres travelled at each node, or empty
   std::vector<std::int32_t> trusted;  ///< pairs of node positions, from and to in turn

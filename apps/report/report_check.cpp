@@ -154,6 +154,11 @@ std::size_t check_nodes(const Member& document) {
   nodes["landmarks"].places<std::int32_t>("i32", count);
   check_columns(nodes["columns"], count);
   if (nodes.has("path")) nodes["path"].floats(count);
+  if (nodes.has("robots")) {
+    const Member robots = nodes["robots"];
+    robots["names"].texts();
+    robots["of"].places<std::int32_t>("i32", robots["names"].value().size(), count);
+  }
   return count;
 }
 

@@ -81,6 +81,9 @@ Json nodes_to_json(const Report& report) {
       {"landmarks", packed(report.landmarks)},
       {"columns", Json::array()}};
   for (const auto& column : report.node_columns) json["columns"].push_back(to_json(column));
+  if (!report.robot_names.empty()) {
+    json["robots"] = {{"names", report.robot_names}, {"of", packed(report.robots)}};
+  }
   if (!report.path.empty()) json["path"] = packed(report.path);
   return json;
 }

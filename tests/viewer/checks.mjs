@@ -10,7 +10,7 @@ const settle = (page) =>
     requestAnimationFrame(() => requestAnimationFrame(done));
   }));
 
-/** Every panel is there with a heading and something to see below it. */
+/** Panels have a heading and something to see below it; those without content are left out. */
 export async function checkPanels(page) {
   const found = await page.$$eval('[data-panel]', (panels) =>
     panels.map((panel) => ({
@@ -18,8 +18,11 @@ export async function checkPanels(page) {
       full: panel.children.length > 1 && panel.innerText.trim() !== '',
     })),
   );
-  assert.deepEqual(found.map(({ name }) => name).sort(), [...PANELS].sort());
+  const names = found.map(({ name }) => name);
+  assert.deepEqual(names, PANELS.filter((name) => names.includes(name)), 'in their order');
+  for (const name of ['summary', 'map', 'reasons', 'options']) assert.ok(names.includes(name), name);
   for (const { name, full } of found) assert.ok(full, `panel ${name} is empty`);
+  assert.equal(await page.$$eval('.panel > .absent', (all) => all.length), 0);
 }
 
 /** How many pixels of a map are drawn on, or how many lines where it is SVG. */
@@ -117,6 +120,28 @@ export async function checkTable(page) {
   await (await score.$('button')).click();
   assert.equal(await direction(), 'descending');
   assert.notEqual(await top(), least);
+}
+
+/** The map that is the result is drawn without pruned loops until they are asked for. */
+export async function checkPrunedSwitch(page) {
+  const before = await ink(page, 1);
+  await page.click('[data-layer="after:prune"]');
+  assert.ok((await ink(page, 1)) > before);
+  await page.click('[data-layer="after:prune"]');
+  assert.equal(await ink(page, 1), before);
+}
+
+/** N and P step through candidates wherever the focus is. */
+export async function checkSteps(page) {
+  const chosen = () => page.$eval('#reasons', (panel) => panel.textContent);
+  await page.evaluate(() => document.activeElement?.blur());
+  await page.keyboard.press('n');
+  const first = await chosen();
+  await page.keyboard.press('n');
+  assert.notEqual(await chosen(), first);
+  await page.keyboard.press('p');
+  assert.equal(await chosen(), first);
+  await page.keyboard.press('Escape');
 }
 
 /** Switching a layer off takes it from the map, and on brings it back. */

@@ -1,5 +1,9 @@
 // A pose graph in the plane, with truth.
+import { test } from 'node:test';
+import * as checks from './checks.mjs';
 import { cityReport, scratchFolder } from './reports.mjs';
 import { reportSuite } from './suite.mjs';
 
-reportSuite(cityReport(scratchFolder()));
+const suite = reportSuite(cityReport(scratchFolder()));
+test('pruned loops come back to the result when asked for', () =>
+  checks.checkPrunedSwitch(suite.page));

@@ -4,7 +4,10 @@ import { after, before, test } from 'node:test';
 import { openReport, startBrowser } from './browser.mjs';
 import * as checks from './checks.mjs';
 
-/** Declares the tests of the report at `path`, with candidates to choose unless `empty`. */
+/**
+ * Declares the tests of the report at `path`, with candidates to choose unless `empty`; gives
+ * back what holds its page once tests run.
+ */
 export function reportSuite(path, { empty = false, webgl = true, ...view } = {}) {
   const suite = {};
   let browser;
@@ -21,6 +24,7 @@ export function reportSuite(path, { empty = false, webgl = true, ...view } = {})
     assert.ok((await checks.ink(suite.page)) > 0);
   });
   if (!empty) {
+    test('N and P step through', () => checks.checkSteps(suite.page));
     test('layers can be switched', () => checks.checkLayers(suite.page));
     test('a click shows row and reasons', () => checks.checkClick(suite.page));
     test('the table filters and sorts', () => checks.checkTable(suite.page));
@@ -29,4 +33,5 @@ export function reportSuite(path, { empty = false, webgl = true, ...view } = {})
   test('the page fits', () => checks.checkFits(suite.page));
   test('nothing failed and nothing was asked of the network', () =>
     assert.deepEqual(suite.problems, []));
+  return suite;
 }

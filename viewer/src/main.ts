@@ -4,7 +4,7 @@ import { html } from './dom';
 import { errorPanel } from './error_panel';
 import { heatPanel } from './heat_panel';
 import { mapPanel } from './map_panel';
-import { type Model, readModel } from './model';
+import { type Model, readModel, verdictCounts } from './model';
 import { reasonsPanel } from './reasons_panel';
 import { scorePanel } from './score_panel';
 import { decayPanel, spectrumPanel } from './spectrum_panel';
@@ -41,16 +41,40 @@ async function fillLater(
       document.documentElement.dataset.ready = 'true';
       return;
     }
-    main.append(make());
+    const element = make();
+    // A panel without content would only be in the way.
+    if (!element.querySelector(':scope > .absent')) main.append(element);
     setTimeout(next);
   };
   next();
 }
 
+/** The map of a pose graph is shown without the loops that were left out of it. */
+function hiddenAtFirst(model: Model): Set<string> {
+  const pruned = verdictCounts(model)[1] > 0;
+  return new Set(model.kind === 'pose_graph' && pruned ? ['after:prune'] : []);
+}
+
+/** N and P go through the candidates, Escape chooses none, but where text is written. */
+function stepByKeys(model: Model, store: Store): void {
+  document.addEventListener('keydown', (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const place = event.target as HTMLElement;
+    const writes = place.matches?.('select, textarea, input:not([type=checkbox])') ?? false;
+    if (writes) return;
+    const by = { n: 1, p: -1 }[event.key.toLowerCase()];
+    if (event.key === 'Escape') store.select(-1);
+    if (by === undefined) return;
+    store.step(by, model.candidates.count);
+    event.preventDefault();
+  });
+}
+
 function show(model: Model): void {
   document.title = `${model.title} – Isotherm report`;
-  const store = new Store({ selected: -1, hidden: new Set(), theme: preferredTheme() });
+  const store = new Store({ selected: -1, hidden: hiddenAtFirst(model), theme: preferredTheme() });
   followTheme(store);
+  stepByKeys(model, store);
   fillHeader(document.getElementById('header')!, model, store);
   const main = document.getElementById('main')!;
   const map = mapPanel(model, store);

@@ -10,6 +10,7 @@ function layerToggle(entry: LegendEntry, store: Store): HTMLElement {
   const box = html('input', { type: 'checkbox', checked: true, 'data-layer': entry.key });
   box.addEventListener('change', () => store.toggleLayer(entry.key, box.checked));
   const sign = html('span', { class: `sign sign-${entry.shape} sign-${entry.key}` });
+  sign.style.setProperty('--sign', `var(${entry.colour})`);
   return html('label', { class: 'layer' }, box, sign, `${entry.label} (${count(entry.count)})`);
 }
 

@@ -59,7 +59,7 @@ export class MapView {
     this.element = html(
       'figure',
       { class: 'map', 'data-layout': layout.key },
-      html('div', { class: 'map-head' }, html('h3', {}, layout.label), this.buttons()),
+      html('div', { class: 'map-head' }, html('h3', {}, layout.label), ...this.prunedSwitch(), this.buttons()),
       this.stage,
       this.note,
     );
@@ -89,6 +89,15 @@ export class MapView {
     this.showScene();
   }
 
+  // The map that is the result shows itself; what was left out of it is there when asked for.
+  private prunedSwitch(): HTMLElement[] {
+    const key = `${this.layout.key}:prune`;
+    if (!this.store.state.hidden.has(key)) return [];
+    const box = html('input', { type: 'checkbox', 'data-layer': key });
+    box.addEventListener('change', () => this.store.toggleLayer(key, box.checked));
+    return [html('label', { class: 'layer' }, box, `pruned ${this.model.nouns.edges}`)];
+  }
+
   private buttons(): HTMLElement {
     const button = (label: string, sign: string, action: () => void) => {
       const element = html('button', { type: 'button', 'aria-label': label, title: label }, sign);
@@ -114,7 +123,10 @@ export class MapView {
   }
 
   private visibleLayers(): DrawLayer[] {
-    return this.scene.layers.filter((layer) => !this.store.state.hidden.has(layer.key));
+    const { hidden } = this.store.state;
+    return this.scene.layers.filter(
+      ({ key }) => !hidden.has(key) && !hidden.has(`${this.layout.key}:${key}`),
+    );
   }
 
   private highlight(): DrawLayer[] {
@@ -190,21 +202,11 @@ export class MapView {
       '=': () => about(1.25),
       '-': () => about(0.8),
       '0': () => this.fit(),
-      n: () => this.step(1),
-      p: () => this.step(-1),
       Escape: () => this.store.select(-1),
     };
     const action = actions[key] ?? actions[key.toLowerCase()];
     action?.();
     return action !== undefined;
-  }
-
-  private step(by: number): void {
-    const { count } = this.model.candidates;
-    if (count === 0) return;
-    const now = this.store.state.selected;
-    const start = now < 0 && by < 0 ? 0 : now;
-    this.store.select((start + by + count) % count);
   }
 
   private resize(): void {

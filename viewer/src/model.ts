@@ -82,6 +82,8 @@ export interface Model {
   nodeCount: number;
   names: BigUint64Array | string[];
   landmarks: Int32Array;
+  /** whose each node is, and what they are called; null where there is but one robot */
+  robots: { of: Int32Array; names: string[] } | null;
   nodeColumns: Column[];
   path: Float32Array | null;
   /** pairs of nodes */
@@ -155,6 +157,17 @@ function readCandidates(json: Json, nodeCount: number): Candidates {
   return all;
 }
 
+function readRobots(json: Json | undefined, nodeCount: number): Model['robots'] {
+  if (!json) return null;
+  const robots = { of: int32(json.of), names: (json.names as unknown[]).map(String) };
+  expect(robots.of.length === nodeCount, 'the robots of nodes have a wrong length');
+  expect(
+    robots.of.every((robot) => robot >= 0 && robot < robots.names.length),
+    'a node is of a robot that is not there',
+  );
+  return robots;
+}
+
 /**
  * The report in a parsed document.
  * Throws an Error that says what is wrong with a document of another kind.
@@ -187,6 +200,7 @@ export function readModel(json: Json | null): Model {
     nodeCount,
     names,
     landmarks: int32(from.nodes.landmarks),
+    robots: readRobots(from.nodes.robots, nodeCount),
     nodeColumns: (from.nodes.columns as Json[]).map((column) => readColumn(column, nodeCount)),
     path: from.nodes.path ? float32(from.nodes.path) : null,
     trusted,

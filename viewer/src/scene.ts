@@ -128,7 +128,7 @@ class SceneBuilder {
   readonly layers: DrawLayer[] = [];
   readonly notes: string[] = [];
   private readonly positions: Float32Array;
-  // What was left out has no place in the map that it did not bend.
+  // What was left out of a pose graph has no place in the map that it did not bend.
   private readonly fading: number;
 
   constructor(
@@ -137,7 +137,7 @@ class SceneBuilder {
     private readonly limit: number,
   ) {
     this.positions = inSpace(layout.positions, model.dimension);
-    this.fading = layout.key === 'after' ? AFTERWARDS : 1;
+    this.fading = layout.key === 'after' && model.kind === 'pose_graph' ? AFTERWARDS : 1;
   }
 
   addCandidates(verdict: number): void {
@@ -163,8 +163,12 @@ class SceneBuilder {
   }
 
   addTrusted(): void {
-    const pairs = joined(this.model.trusted, PATH * this.limit);
-    const size = this.model.trusted.length / 2;
+    trustedOf(this.model).forEach(({ key, pairs, colour }) => this.addPath(key, pairs, colour));
+  }
+
+  private addPath(key: string, all: Int32Array, colour: string): void {
+    const pairs = joined(all, PATH * this.limit);
+    const size = all.length / 2;
     if (pairs.length < 2 * size) {
       this.notes.push(
         `Drawn: ${count(pairs.length / 2)} straight lines in place of ${count(size)} ` +
@@ -175,7 +179,7 @@ class SceneBuilder {
       pairs[2 * k],
       pairs[2 * k + 1],
     ]);
-    this.add('trusted', { lines, width: 1.5, opacity: 0.9 });
+    this.add(key, { lines, colour, width: 1.5, opacity: 0.9 });
   }
 
   /** The true path of a pose graph; elsewhere a line from each node to where it belongs. */
@@ -186,7 +190,7 @@ class SceneBuilder {
       const stops = thinned(this.model.nodeCount, PATH * this.limit);
       const steps = Math.max(stops.length - 1, 0);
       const { lines } = linesOf(truth, steps, (k) => [stops[k], stops[k + 1]]);
-      this.add('truth', { positions: truth, lines, width: 1.5, opacity: 0.9 });
+      this.add('truth', { positions: truth, lines, width: 4, opacity: 0.45 });
       return;
     }
     const both = new Float32Array(2 * truth.length);
@@ -200,12 +204,17 @@ class SceneBuilder {
   addNodes(): void {
     if (this.model.kind === 'pose_graph') return;
     const landmarks = new Set(this.model.landmarks);
-    const known = [...Array(this.model.nodeCount).keys()].filter((k) => isKnown(this.positions, k));
-    const moving = known.filter((k) => !landmarks.has(k));
+    const moving = [...Array(this.model.nodeCount).keys()].filter(
+      (k) => !landmarks.has(k) && isKnown(this.positions, k),
+    );
     const chosen = thinned(moving.length, PATH * this.limit);
     this.noteThinning(chosen.length, moving.length, this.model.nouns.nodes);
     this.add('nodes', { points: chosen.map((k) => moving[k]), width: 5, opacity: 1 });
-    const fixed = known.filter((k) => landmarks.has(k));
+  }
+
+  addLandmarks(): void {
+    if (this.model.kind === 'pose_graph') return;
+    const fixed = this.model.landmarks.filter((k) => isKnown(this.positions, k));
     this.add('landmarks', { points: Uint32Array.from(fixed), width: 10, opacity: 1 });
   }
 
@@ -235,15 +244,48 @@ function label(key: string): string {
   return { keep: 'kept', prune: 'pruned', ambiguous: 'ambiguous' }[key] ?? key;
 }
 
+const ROBOT_COLOURS = 6;
+
+/** The trusted edges of each robot, with a colour of its own; of all, where there is but one. */
+function trustedOf(
+  model: Model,
+): { key: string; label: string; pairs: Int32Array; colour: string }[] {
+  const { robots, trusted, nouns } = model;
+  if (!robots) {
+    return [{ key: 'trusted', label: nouns.trusted, pairs: trusted, colour: COLOURS.trusted }];
+  }
+  const pairs: number[][] = robots.names.map(() => []);
+  for (let k = 0; k < trusted.length; k += 2) {
+    pairs[robots.of[trusted[k]]].push(trusted[k], trusted[k + 1]);
+  }
+  return robots.names.map((name, robot) => ({
+    key: `trusted-${robot}`,
+    label: `${nouns.trusted} of ${name}`,
+    pairs: Int32Array.from(pairs[robot]),
+    colour: `--series-${1 + (robot % ROBOT_COLOURS)}`,
+  }));
+}
+
 /** The layers of a layout, undermost first; at most `limit` candidates a verdict. */
 export function buildScene(model: Model, layout: Layout, limit: number): Scene {
   const builder = new SceneBuilder(model, layout, limit);
-  builder.addCandidates(1);
-  builder.addCandidates(2);
-  builder.addTrusted();
-  builder.addCandidates(0);
-  builder.addTruth();
-  builder.addNodes();
+  if (model.kind === 'pose_graph') {
+    // The truth lies below the estimate, as a broad band that shows on both sides of it.
+    builder.addCandidates(1);
+    builder.addCandidates(2);
+    builder.addTruth();
+    builder.addTrusted();
+    builder.addCandidates(0);
+  } else {
+    // Nodes do not cover edges, nor do the many that are kept cover those that are not.
+    builder.addNodes();
+    builder.addTrusted();
+    builder.addCandidates(0);
+    builder.addCandidates(2);
+    builder.addCandidates(1);
+    builder.addTruth();
+    builder.addLandmarks();
+  }
   return { layers: builder.layers, notes: builder.notes };
 }
 
@@ -262,7 +304,10 @@ export function legendOf(model: Model): LegendEntry[] {
   const add = (key: string, text: string, size: number, shape: 'line' | 'point') => {
     if (size > 0) entries.push({ key, label: text, count: size, colour: COLOURS[key], shape });
   };
-  add('trusted', model.nouns.trusted, model.trusted.length / 2, 'line');
+  for (const { key, label: text, pairs, colour } of trustedOf(model)) {
+    const size = pairs.length / 2;
+    if (size > 0) entries.push({ key, label: text, count: size, colour, shape: 'line' });
+  }
   const truth = model.layouts.find((layout) => layout.errors)?.errors;
   if (truth) {
     const known = truth.reduce((sum, error) => sum + Number(!Number.isNaN(error)), 0);

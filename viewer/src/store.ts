@@ -2,7 +2,7 @@
 export interface State {
   /** chosen candidate, or -1 */
   selected: number;
-  /** layers that are not drawn */
+  /** layers that are not drawn, anywhere or, as `after:prune`, in one layout */
   hidden: ReadonlySet<string>;
   theme: 'light' | 'dark';
 }
@@ -27,6 +27,14 @@ export class Store {
 
   select(candidate: number): void {
     if (candidate !== this.state.selected) this.update({ selected: candidate });
+  }
+
+  /** The next or the previous of `count` candidates, from the last to the first and back. */
+  step(by: number, count: number): void {
+    if (count === 0) return;
+    const now = this.state.selected;
+    const start = now < 0 && by < 0 ? 0 : now;
+    this.select((start + by + count) % count);
   }
 
   toggleLayer(key: string, visible: boolean): void {

@@ -3,7 +3,7 @@ import test from 'node:test';
 import { pick, squaredDistance } from '../src/pick';
 import { buildScene, inSpace, joined, legendOf, thinned } from '../src/scene';
 import { fitted, initialView, projectionOf, projectNode } from '../src/view';
-import { f32, squareDocument, squareModel } from './fixture';
+import { f32, i32, squareDocument, squareModel } from './fixture';
 import { readModel } from '../src/model';
 
 test('thinning keeps the ends of the range apart evenly', () => {
@@ -41,6 +41,20 @@ test('edges without a place are left out', () => {
   const layers = buildScene(model, model.layouts[0], 10).layers;
   assert.equal(layers.find(({ key }) => key === 'prune')?.lines.length, 0);
   assert.deepEqual([...layers.find(({ key }) => key === 'trusted')!.lines], [2, 3]);
+});
+
+test('robots have paths of their own, each with a name and a colour', () => {
+  const document = squareDocument();
+  document.nodes.robots = { names: ['a', 'b'], of: i32([0, 0, 1, 1]) };
+  const model = readModel(document);
+  const layers = buildScene(model, model.layouts[0], 10).layers;
+  const paths = layers.filter(({ key }) => key.startsWith('trusted'));
+  assert.deepEqual(paths.map(({ key, colour, lines }) => [key, colour, lines.length]), [
+    ['trusted-0', '--series-1', 4],
+    ['trusted-1', '--series-2', 2],
+  ]);
+  const labels = legendOf(model).map(({ label, count }) => `${label} ${count}`);
+  assert.ok(labels.includes('odometry of a 2') && labels.includes('odometry of b 1'), labels.join());
 });
 
 test('the legend counts', () => {

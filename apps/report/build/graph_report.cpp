@@ -1,4 +1,5 @@
 #include "report/build/graph_report.hpp"
+#include "isotherm/base/words.hpp"
 
 #include <algorithm>
 
@@ -85,13 +86,16 @@ Report graph_report(const WeightedGraph& graph, const WeightedGraph& left,
   report.truth_note = "A plain graph has no true positions to compare with.";
   const auto parts = [](const WeightedGraph& part) { return connected_components(part).count; };
   report.summary = {
-      {"What came in", fmt::format("{}: {} vertices and {} edges in {} connected parts.", run.title,
-                                   graph.vertex_count(), graph.edge_count(), parts(graph))},
+      {"What came in",
+       fmt::format("{}: {} and {} in {}.", run.title,
+                   counted(graph.vertex_count(), "vertex", "vertices"),
+                   counted(graph.edge_count(), "edge"), counted(parts(graph), "connected part"))},
       {"What was decided",
        fmt::format("Method {} {}, in {:.2f} s.", enum_name(run.options.method),
                    counts_in_words(result.verdicts, report.nouns), result.seconds)},
-      {"The result", fmt::format("The graph that is left has {} edges in {} connected parts.",
-                                 left.edge_count(), parts(left))},
+      {"The result",
+       fmt::format("The graph that is left has {} in {}.", counted(left.edge_count(), "edge"),
+                   counted(parts(left), "connected part"))},
       {"How sure", words_of_threshold(result)},
       {"Options", options_in_words(report.options, options_to_json(JudgeEdgesOptions{}))}};
   return report;

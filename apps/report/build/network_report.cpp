@@ -1,4 +1,5 @@
 #include "report/build/network_report.hpp"
+#include "isotherm/base/words.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -136,21 +137,23 @@ Report network_report(const RangeNetwork& network, const LocalizeResult& result,
   if (run.truth.size() > 0) {
     const auto comparison = compare(result, run.truth);
     add_truth(layout, comparison);
-    report.truth_note =
-        fmt::format("Distance of {} nodes from their true positions{}.", comparison.nodes,
-                    result.anchored ? "" : ", after the isometry that fits best");
+    report.truth_note = fmt::format("Distance of {} from their true positions{}.",
+                                    counted(comparison.nodes, "node"),
+                                    result.anchored ? "" : ", after the isometry that fits best");
     words += fmt::format(" They are {:.4g} m RMS from the truth.", comparison.rmsd);
   }
   report.layouts.push_back(std::move(layout));
   add_spectral(report, network, run);
   report.summary = {
-      {"What came in",
-       fmt::format("{}: {} nodes in {}, {} of them anchors, and {} ranges.", run.title,
-                   network.node_count(), network.dimension == 2 ? "the plane" : "space",
-                   network.landmarks.size(), network.ranges.size())},
+      {"What came in", fmt::format("{}: {} in {}, {} among them, and {}.", run.title,
+                                   counted(network.node_count(), "node"),
+                                   network.dimension == 2 ? "the plane" : "space",
+                                   counted(network.landmarks.size(), "anchor"),
+                                   counted(network.ranges.size(), "range"))},
       {"What was decided",
-       fmt::format("Method {} {}, in {} rounds and {:.2f} s.", enum_name(run.options.method),
-                   counts_in_words(result.verdicts, report.nouns), result.rounds, result.seconds)},
+       fmt::format("Method {} {}, in {} and {:.2f} s.", enum_name(run.options.method),
+                   counts_in_words(result.verdicts, report.nouns), counted(result.rounds, "round"),
+                   result.seconds)},
       {"The result", words},
       {"How sure", words_of_range_certainty(result)},
       {"Options", options_in_words(report.options, options_to_json(LocalizeOptions{}))}};

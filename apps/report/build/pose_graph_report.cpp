@@ -1,7 +1,9 @@
 #include "report/build/pose_graph_report.hpp"
+#include "isotherm/base/words.hpp"
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <variant>
 
 #include <fmt/format.h>
@@ -57,12 +59,29 @@ class Explainer {
     report_.nouns = {"pose", "poses", "loop", "loops", "odometry"};
     report_.options = options_to_json(run_.options.prune);
     report_.warnings = decisions_.warnings;
-    report_.node_ids = graph_.ids;
+    if (!graph_.ids.empty() && !robot_letter(graph_.ids.back()).empty()) {
+      for (const auto id : graph_.ids) report_.node_names.push_back(vertex_name(id));
+    } else {
+      report_.node_ids = graph_.ids;
+    }
+    add_robots();
     for (const Index k : roles_.odometry) {
       report_.trusted.push_back(static_cast<std::int32_t>(graph_.constraints[k].from));
       report_.trusted.push_back(static_cast<std::int32_t>(graph_.constraints[k].to));
     }
     report_.rounds = report_rounds(decisions_);
+  }
+
+  void add_robots() {
+    if (run_.robots.size() < 2) return;
+    std::map<std::uint64_t, std::int32_t> position;
+    for (const auto& robot : run_.robots) {
+      position.emplace(robot.number, static_cast<std::int32_t>(report_.robot_names.size()));
+      report_.robot_names.push_back(robot.name.empty() ? "no robot" : robot.name);
+    }
+    for (Index v = 0; v < graph_.vertex_count(); ++v) {
+      report_.robots.push_back(position.at(graph_.robot(v)));
+    }
   }
 
   void add_candidates() {
@@ -74,6 +93,16 @@ class Explainer {
     });
     add_chi2();
     if (!decisions_.consensus.details.empty()) add_consensus();
+    if (!decisions_.evidence.details.empty()) add_probability();
+  }
+
+  void add_probability() {
+    ReportColumn probability{"probability", "probability", "", "Of the loop being true.", {},
+                             false};
+    for (const auto& detail : decisions_.evidence.details) {
+      probability.values.push_back(static_cast<float>(detail.probability));
+    }
+    report_.candidates.columns.push_back(std::move(probability));
   }
 
   void add_chi2() {
@@ -187,17 +216,19 @@ class Explainer {
   }
 
   std::string words_of_input() const {
-    return fmt::format("{}: {} poses in {}, {} odometry edges and {} loop closures.", run_.title,
-                       graph_.vertex_count(), Pose::kDim == 2 ? "the plane" : "space",
-                       roles_.odometry.size(), roles_.candidates.size());
+    return fmt::format("{}: {} in {}, {} and {}.", run_.title, counted(graph_.ids.size(), "pose"),
+                       Pose::kDim == 2 ? "the plane" : "space",
+                       counted(roles_.odometry.size(), "odometry edge"),
+                       counted(roles_.candidates.size(), "loop closure"));
   }
 
   std::string words_of_map() const {
     const auto& map = optimized_;
     std::string text = fmt::format(
-        "The map was optimised in {} iteration{}; its {} constraints have a chi-squared of "
+        "The map was optimised in {}; {} of it have a chi-squared of "
         "{:.4g} in all.",
-        map.iterations, map.iterations == 1 ? "" : "s", map.chi2.size(), map.chi2.sum());
+        counted(map.iterations, "iteration"), counted(map.chi2.size(), "constraint"),
+        map.chi2.sum());
     if (errors_.size() == 2) {
       text += fmt::format(
           " Its trajectory is {:.3g} m RMSE from the truth ({:.3g} m on average, "

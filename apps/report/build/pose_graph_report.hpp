@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "isotherm/slam/graph/pose_graph.hpp"
+#include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm/slam/pipeline.hpp"
 #include "report/report.hpp"
 
@@ -16,6 +17,7 @@ struct PruneRun {
   std::string title;  ///< name of the input file
   slam::PipelineOptions options;
   std::vector<std::optional<Pose>> truth;  ///< one a vertex, or empty
+  std::vector<slam::Robot> robots;         ///< of the graph
 };
 
 /// Explains what prune_and_optimize() made of `graph`: compares maps, chi-squared, heat

@@ -80,7 +80,8 @@ std::vector<Robot> robots_of(const PoseGraphFile& file) {
             continue;
           }
           seen.push_back(robot);
-          robots.push_back({graph.robots.empty() ? robot_letter(graph.ids[v]) : names[robot], 1});
+          robots.push_back(
+              {graph.robots.empty() ? robot_letter(graph.ids[v]) : names[robot], 1, robot});
         }
         if (robots.size() == 1 && robots.front().name.empty()) robots.clear();
         return robots;

@@ -56,6 +56,7 @@ PoseGraphFile read_pose_graphs(const std::vector<std::string>& paths,
 struct Robot {
   std::string name;  ///< the letter of GTSAM's keys, or the name of the file without suffix
   std::uint64_t vertices = 0;
+  std::uint64_t number = 0;  ///< PoseGraph::robot() of its vertices
 };
 
 /// The robots of a graph, in the order of their first vertices; empty where ids and files
