@@ -16,6 +16,7 @@ std::string_view trimmed(std::string_view text) {
 
 CsvReader::CsvReader(TextReader reader) : reader_(std::move(reader)) {
   if (!next_content_line()) return;
+  require_commas();
   double number = 0.0;
   if (parse_number(fields_.front(), number)) {
     first_row_pending_ = true;
@@ -23,6 +24,19 @@ CsvReader::CsvReader(TextReader reader) : reader_(std::move(reader)) {
     header_.assign(fields_.begin(), fields_.end());
     fields_.clear();
   }
+}
+
+// A row with other separators would be taken for one field, and the first row for names.
+void CsvReader::require_commas() const {
+  const auto first = reader_.line();
+  const bool semicolons = first.find(';') != std::string_view::npos;
+  const bool blanks =
+      fields_.size() == 1 && fields_.front().find_first_of(" \t") != std::string_view::npos;
+  if (!semicolons && !blanks) return;
+  constexpr std::size_t kShown = 60;
+  throw ParseError({reader_.path(), line_number(), 0}, std::string(first.substr(0, kShown)),
+                   std::string("fields are separated by ") +
+                       (semicolons ? "semicolons" : "blanks") + "; expected commas");
 }
 
 // Goes to the next line that is neither empty nor a comment.

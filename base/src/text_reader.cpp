@@ -239,8 +239,9 @@ void TextReader::fail(const std::string& problem) const {
 }
 
 void TextReader::fail_expected(std::string_view what, std::string_view kind) {
-  word(what);
-  fail("expected " + std::string(what) + ", " + std::string(kind));
+  const bool semicolons = word(what).find(';') != std::string_view::npos;
+  fail("expected " + std::string(what) + ", " + std::string(kind) +
+       (semicolons ? "; semicolons separate nothing here" : ""));
 }
 
 std::vector<std::string_view> split(std::string_view line, std::string_view separators) {

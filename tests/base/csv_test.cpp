@@ -57,5 +57,18 @@ TEST(CsvReader, EmptyInput) {
   EXPECT_FALSE(reader.next_row());
 }
 
+TEST(CsvReader, OtherSeparatorsAreTold) {
+  const auto error = [](const std::string& text) {
+    return message_of([&] { CsvReader(TextReader("f", text)); });
+  };
+  EXPECT_EQ(error("# mine\nx;y\n1;2\n"),
+            "f:2: fields are separated by semicolons; expected commas (got 'x;y')");
+  EXPECT_EQ(error("1,5;2,5\n"),
+            "f:1: fields are separated by semicolons; expected commas (got '1,5;2,5')");
+  EXPECT_EQ(error("1 2 3\n"), "f:1: fields are separated by blanks; expected commas (got '1 2 3')");
+  EXPECT_EQ(error("x\n1\n"), "no error");
+  EXPECT_EQ(error("x, y\n1, 2\n"), "no error");
+}
+
 }  // namespace
 }  // namespace isotherm

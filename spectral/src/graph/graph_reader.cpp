@@ -2,6 +2,7 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -20,7 +21,35 @@ struct RawEdge {
   std::uint64_t from = 0;
   std::uint64_t to = 0;
   double weight = 1.0;
+  std::uint64_t line = 0;
 };
+
+// Many programs list an undirected edge once from each end. Of the two the first stays.
+void join_directions(std::vector<RawEdge>& edges, ReadReport& report) {
+  const auto ends = [](const RawEdge& edge) { return std::minmax(edge.from, edge.to); };
+  std::vector<std::size_t> order(edges.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::tuple(ends(edges[a]), edges[a].weight) <
+           std::tuple(ends(edges[b]), edges[b].weight);
+  });
+  std::vector<bool> repeats(edges.size(), false);
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    const auto& first = edges[order[i - 1]];
+    const auto& second = edges[order[i]];
+    const bool mirrored = first.from == second.to && first.to == second.from &&
+                          first.from != first.to && first.weight == second.weight;
+    if (!mirrored || repeats[order[i - 1]]) continue;
+    repeats[order[i]] = true;
+    report.add_note(
+        {"edge in both directions",
+         {report.path, second.line, 0},
+         "",
+         "the edge of line " + std::to_string(first.line) + ", from the other end; both are one"});
+  }
+  std::size_t next = 0;
+  std::erase_if(edges, [&](const RawEdge&) { return repeats[next++]; });
+}
 
 bool usable_weight(double weight) { return std::isfinite(weight) && weight > 0.0; }
 
@@ -64,18 +93,37 @@ GraphFile finish_edge_list(std::vector<RawEdge> edges, ReadReport report, std::u
     throw ParseError({report.path, 0, 0}, "",
                      "no edge; expected rows of from, to and weight, or a MatrixMarket matrix");
   }
+  join_directions(edges, report);
   return build_graph(edges, std::move(report));
+}
+
+constexpr const char* kHowToJoin =
+    ", not edges; 'isotherm edges' joins points by --neighbours or --radius";
+
+// Coordinates in place of numbers of vertices.
+void require_vertices(const CsvReader& csv, std::size_t from) {
+  const auto field = csv.text(from, "the first vertex");
+  double coordinate = 0.0;
+  std::uint64_t vertex = 0;
+  if (!parse_unsigned(field, vertex) && parse_number(field, coordinate)) {
+    csv.fail(from,
+             std::string("expected the number of a vertex; these look like points") + kHowToJoin);
+  }
 }
 
 GraphFile read_comma_list(TextReader& text, ReadReport report) {
   CsvReader csv(std::move(text));
+  if (csv.find_column("x") && !csv.find_column("from")) {
+    throw ParseError({report.path, 0, 0}, "x", std::string("these are points") + kHowToJoin);
+  }
   const auto from = csv.column("from", 0);
   const auto to = csv.column("to", 1);
   const auto named_weight = csv.find_column("weight");
   std::vector<RawEdge> edges;
   while (csv.next_row()) {
+    if (edges.empty()) require_vertices(csv, from);
     RawEdge edge{csv.unsigned_integer(from, "the first vertex"),
-                 csv.unsigned_integer(to, "the second vertex"), 1.0};
+                 csv.unsigned_integer(to, "the second vertex"), 1.0, csv.line_number()};
     const bool weighted = csv.has_header() ? named_weight.has_value() : csv.field_count() > 2;
     if (weighted) {
       const auto column = named_weight.value_or(2);
@@ -87,14 +135,22 @@ GraphFile read_comma_list(TextReader& text, ReadReport report) {
   return finish_edge_list(std::move(edges), std::move(report), csv.line_number());
 }
 
+bool has_names(std::string_view line) {
+  const auto names = split(line, " \t\r");
+  return names.size() > 1 && names[0] == "from" && names[1] == "to" &&
+         (names.size() == 2 || (names.size() == 3 && names[2] == "weight"));
+}
+
 GraphFile read_blank_list(TextReader& text, ReadReport report) {
   std::vector<RawEdge> edges;
+  bool first = true;
   while (text.next_line()) {
     if (text.at_line_end() || text.line().starts_with('#') || text.line().starts_with('%')) {
       continue;
     }
+    if (std::exchange(first, false) && has_names(text.line())) continue;
     RawEdge edge{text.unsigned_integer("the first vertex"),
-                 text.unsigned_integer("the second vertex"), 1.0};
+                 text.unsigned_integer("the second vertex"), 1.0, text.line_number()};
     if (!text.at_line_end()) {
       edge.weight = text.number("a weight");
       if (!usable_weight(edge.weight)) text.fail(kExpectedWeight);

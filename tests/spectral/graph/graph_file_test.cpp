@@ -44,6 +44,37 @@ TEST(ReadGraph, EdgeLists) {
   EXPECT_EQ(parse("from,to\n0,1\n").graph.edge(0).weight, 1.0);
 }
 
+TEST(ReadGraph, NamesMayStandAboveBlanks) {
+  EXPECT_EQ(parse("from to weight\n0 1 2\n").graph.edge(0).weight, 2.0);
+  EXPECT_EQ(parse("from\tto\n0\t1\n").graph.edge_count(), 1);
+  EXPECT_EQ(error_of("to from\n0 1\n"),
+            "f:1:1: expected the first vertex, an integer in [0, 2^64) (got 'to')");
+}
+
+TEST(ReadGraph, BothDirectionsAreOneEdge) {
+  for (const char* text : {"from,to,weight\n0,1,2\n1,2,3\n2,1,3\n1,0,2\n0,1,2\n",
+                           "0 1 2\n1 2 3\n2 1 3\n1 0 2\n0 1 2\n"}) {
+    const auto file = parse(text);
+    ASSERT_EQ(file.graph.edge_count(), 3) << text;
+    EXPECT_EQ(file.graph.edge(2).to, 1) << "parallel edges of one direction stay";
+    EXPECT_THAT(file.report.notes, ElementsAre(Pair("edge in both directions", 2)));
+  }
+  EXPECT_EQ(parse("0 1 2\n1 0 3\n").graph.edge_count(), 2) << "another weight";
+  EXPECT_EQ(parse("0 0\n0 0\n").graph.edge_count(), 2);
+}
+
+TEST(ReadGraph, PointsAndOtherSeparatorsAreTold) {
+  EXPECT_EQ(error_of("id,x,y\n0,1,2\n"),
+            "f: these are points, not edges; 'isotherm edges' joins points by --neighbours or "
+            "--radius (got 'x')");
+  EXPECT_EQ(error_of("0.5,1,2\n"),
+            "f:1:1: expected the number of a vertex; these look like points, not edges; 'isotherm "
+            "edges' joins points by --neighbours or --radius (got '0.5')");
+  EXPECT_EQ(error_of("0;1;2\n"),
+            "f:1:1: expected the first vertex, an integer in [0, 2^64); semicolons separate "
+            "nothing here (got '0;1;2')");
+}
+
 TEST(ReadGraph, MatrixMarket) {
   const auto symmetric = parse(
       "%%MatrixMarket matrix coordinate real symmetric\n% comment\n4 4 3\n2 1 0.5\n3 2 2\n1 1 9\n");

@@ -18,7 +18,8 @@ namespace isotherm {
 /// quoted.
 class CsvReader {
  public:
-  /// @throws FileError if the path cannot be opened.
+  /// @throws FileError if the path cannot be opened, ParseError if the first row has other
+  ///   separators than commas.
   explicit CsvReader(const std::string& path) : CsvReader(TextReader(path)) {}
   explicit CsvReader(TextReader reader);
 
@@ -49,6 +50,7 @@ class CsvReader {
 
  private:
   bool next_content_line();
+  void require_commas() const;
   void split();
 
   TextReader reader_;
