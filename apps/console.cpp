@@ -2,7 +2,7 @@
 
 #include <cerrno>
 #include <chrono>
-#include <memory>
+#include <cstdint>
 #include <string>
 
 #include <fmt/format.h>
@@ -13,43 +13,89 @@
 namespace isotherm::apps {
 namespace {
 
-// Redraws at most ten times a second and erases itself when a stage is done.
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// "8 s", "3 min", "2 h".
+std::string duration_in_words(double seconds) {
+  if (seconds < 100.0) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 6000.0) return fmt::format("{:.0f} min", seconds / 60.0);
+  return fmt::format("{:.0f} h", seconds / 3600.0);
+}
+
+// Redraws at most ten times a second and erases itself when a stage is done, or when a line
+// is said.
 class ProgressLine {
  public:
-  explicit ProgressLine(bool visible) : visible_(visible) {}
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
-  ~ProgressLine() { erase(); }
-
   void draw(const Progress& progress) {
-    if (!visible_) return;
+    start_stage(progress);
     const bool finished = progress.total > 0 && progress.done >= progress.total;
-    const auto now = std::chrono::steady_clock::now();
+    const auto now = Clock::now();
     if (!finished && now - last_draw_ < std::chrono::milliseconds(100)) return;
     last_draw_ = now;
     if (finished) {
       erase();
       return;
     }
-    const std::string amount =
-        progress.total > 0 ? fmt::format("{:3.0f} %", 100.0 * static_cast<double>(progress.done) /
-                                                          static_cast<double>(progress.total))
-                           : fmt::format("{}", progress.done);
-    put(fmt::format("\r\033[K{}: {}", progress.stage, amount));
+    put(fmt::format("\r\033[K{}: {}", stage_, amount(progress)));
     drawn_ = true;
   }
 
- private:
-  void erase() {
+  void erase() noexcept {
     if (!drawn_) return;
     put("\r\033[K");
     drawn_ = false;
   }
 
-  bool visible_;
+ private:
+  // Work that starts anew under the same name is another pass, not a step back.
+  void start_stage(const Progress& progress) {
+    const bool again = progress.stage == stage_name_ && progress.done < done_;
+    if (progress.stage != stage_name_ || again) {
+      pass_ = again ? pass_ + 1 : 1;
+      stage_name_ = progress.stage;
+      stage_ = pass_ == 1 ? stage_name_ : fmt::format("{}, pass {}", stage_name_, pass_);
+      stage_start_ = Clock::now();
+    }
+    done_ = progress.done;
+  }
+
+  std::string amount(const Progress& progress) const {
+    const std::string elapsed = duration_in_words(seconds_since(start_));
+    if (progress.total == 0) return fmt::format("{}, {}", progress.done, elapsed);
+    const double share = static_cast<double>(progress.done) / static_cast<double>(progress.total);
+    const double so_far = seconds_since(stage_start_);
+    constexpr double kTelling = 0.02;  // of the stage, before which nothing is foretold
+    const std::string left =
+        share > kTelling && so_far > 1.0
+            ? fmt::format(", about {} left", duration_in_words(so_far * (1.0 - share) / share))
+            : "";
+    return fmt::format("{:3.0f} %, {}{}", 100.0 * share, elapsed, left);
+  }
+
   bool drawn_ = false;
-  std::chrono::steady_clock::time_point last_draw_{};
+  std::string stage_name_;
+  std::string stage_;
+  int pass_ = 1;
+  std::uint64_t done_ = 0;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point stage_start_ = start_;
+  Clock::time_point last_draw_{};
 };
+
+// There is one terminal.
+ProgressLine& the_progress_line() {
+  static ProgressLine line;
+  return line;
+}
+
+void put_line(std::string_view text) {
+  the_progress_line().erase();
+  put(fmt::format("{}\n", text));
+}
 
 }  // namespace
 
@@ -62,14 +108,14 @@ void put(std::string_view text) noexcept {
   }
 }
 
-void complain(std::string_view problem) { put(fmt::format("isotherm: {}\n", problem)); }
+void complain(std::string_view problem) { put_line(fmt::format("isotherm: {}", problem)); }
 
 void say(const CommonFlags& flags, std::string_view line) {
-  if (!flags.quiet) put(fmt::format("{}\n", line));
+  if (!flags.quiet) put_line(line);
 }
 
 void warn(const CommonFlags& flags, std::string_view line) {
-  if (!flags.quiet) put(fmt::format("warning: {}\n", line));
+  if (!flags.quiet) put_line(fmt::format("warning: {}", line));
 }
 
 void detail_line(const CommonFlags& flags, std::string_view line) {
@@ -78,9 +124,8 @@ void detail_line(const CommonFlags& flags, std::string_view line) {
 
 ProgressCallback progress_line(const CommonFlags& flags) {
   const bool visible = !flags.quiet && !flags.no_progress && isatty(STDERR_FILENO) != 0;
-  const auto line = std::make_shared<ProgressLine>(visible);
-  return [line](const Progress& progress) {
-    line->draw(progress);
+  return [visible](const Progress& progress) {
+    if (visible) the_progress_line().draw(progress);
     return !interrupted();
   };
 }

@@ -9,9 +9,9 @@ namespace {
 constexpr std::size_t kLineWidth = 80;
 constexpr std::size_t kNameWidth = 30;
 
-// `name` on the left, `text` wrapped on the right, below each other where the
-// name is too long.
-std::string two_columns(const std::string& name, const std::string& text) {
+}  // namespace
+
+std::string help_row(const std::string& name, const std::string& text) {
   std::string page = "  " + name;
   std::size_t column = page.size();
   const auto to_text_column = [&] {
@@ -42,15 +42,13 @@ std::string two_columns(const std::string& name, const std::string& text) {
   return page + '\n';
 }
 
-}  // namespace
-
 HelpFormatter::HelpFormatter() { column_width(kNameWidth); }
 
 std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positional) const {
   std::string text = make_option_desc(option);
   const std::string by_default = option->get_default_str();
   if (!by_default.empty() && by_default != "\"\"") text += " [" + by_default + "]";
-  return two_columns(make_option_name(option, is_positional) + make_option_opts(option), text);
+  return help_row(make_option_name(option, is_positional) + make_option_opts(option), text);
 }
 
 std::string HelpFormatter::make_option_opts(const CLI::Option* option) const {
@@ -64,7 +62,7 @@ std::string HelpFormatter::make_option_opts(const CLI::Option* option) const {
 }
 
 std::string HelpFormatter::make_subcommand(const CLI::App* verb) const {
-  return two_columns(verb->get_name(), verb->get_description());
+  return help_row(verb->get_name(), verb->get_description());
 }
 
 }  // namespace isotherm::apps

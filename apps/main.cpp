@@ -10,6 +10,7 @@
 #include "interruption.hpp"
 #include "isotherm/base/error.hpp"
 #include "serial_openmp.hpp"
+#include "suggestions.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {
@@ -48,13 +49,18 @@ int run(int argc, char** argv) {
   root.require_subcommand(1);
   root.formatter(std::make_shared<HelpFormatter>());
 
-  const std::vector<Verb> verbs = {add_info(root),    add_convert(root),  add_simulate(root),
-                                   add_corrupt(root), add_prune(root),    add_optimize(root),
-                                   add_label(root),   add_eval(root),     add_edges(root),
-                                   add_embed(root),   add_localize(root), add_report(root)};
+  const std::vector<Verb> verbs = {add_info(root),     add_convert(root), add_candidates(root),
+                                   add_simulate(root), add_corrupt(root), add_prune(root),
+                                   add_optimize(root), add_label(root),   add_eval(root),
+                                   add_edges(root),    add_embed(root),   add_localize(root),
+                                   add_report(root)};
+  const auto words = command_words(argc, argv);
   try {
-    root.parse(argc, argv);
+    // CLI11 takes them last first.
+    root.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& error) {
+    const auto meant = error.get_exit_code() == 0 ? "" : what_was_meant(root, words);
+    if (!meant.empty()) return failed(meant.c_str(), kUsage);
     return root.exit(error) == 0 ? kOk : kUsage;
   } catch (const InvalidArgument& error) {
     return failed(error.what(), kUsage);

@@ -68,10 +68,14 @@ spectral::GraphFile structure_of(const slam::PoseGraph<Pose>& graph) {
   return {{graph.vertex_count(), std::move(edges)}, graph.ids, {}};
 }
 
+constexpr const char* kToVehicle = "camera-to-vehicle";
+constexpr const char* kToCamera = "vehicle-to-camera";
+
 struct ConvertVerb : OptionVerb<NoOptions> {
   std::vector<std::string> input;
   std::string output;
   std::string to;
+  std::string axes;
 
   int run() {
     if (resolve_or_dump()) return kOk;
@@ -157,6 +161,9 @@ struct ConvertVerb : OptionVerb<NoOptions> {
   }
 
   ReadReport convert_pose_graph(slam::PoseGraphFile file, FileFormat target) {
+    if (!axes.empty() && slam::content_of(target) != FileContent::trajectory) {
+      throw InvalidArgument("--axes", "are turned in trajectories only");
+    }
     if (target == FileFormat::g2o) {
       slam::write_g2o(output, file);
     } else if (target == FileFormat::toro) {
@@ -181,8 +188,18 @@ struct ConvertVerb : OptionVerb<NoOptions> {
     if (slam::content_of(target) != FileContent::trajectory || target == FileFormat::points) {
       refuse(file.report, target);
     }
-    slam::write_trajectory(output, file.trajectory, target);
+    auto trajectory = file.trajectory;
+    if (!axes.empty()) turn(trajectory);
+    warn_of_missing_times(trajectory, target, flags);
+    slam::write_trajectory(output, trajectory, target);
     return file.report;
+  }
+
+  void turn(slam::AnyTrajectory& any) const {
+    auto* trajectory = std::get_if<slam::Trajectory<slam::Pose3>>(&any);
+    if (trajectory == nullptr) throw InvalidArgument("--axes", "are those of poses in space");
+    const auto change = axes == kToVehicle ? slam::camera_to_vehicle : slam::vehicle_to_camera;
+    for (auto& pose : trajectory->poses) pose = change(pose);
   }
 
   ReadReport convert_ranges(const network::RangeFile& file, FileFormat target) const {
@@ -227,6 +244,11 @@ Verb add_convert(CLI::App& root) {
                    "by default what the output's suffix says (.g2o .graph .tum .kitti .euroc "
                    ".pyfg .mtx)")
       ->type_name("FORMAT");
+  verb->add_option("--axes", convert->axes,
+                   "turn a trajectory in space: a camera's axes are z forward, x right, y down, "
+                   "a vehicle's x forward, y left, z up")
+      ->check(CLI::IsMember({kToVehicle, kToCamera}))
+      ->type_name("CHANGE");
   convert->add_flags(*verb);
   return verb_of(verb, convert);
 }

@@ -1,4 +1,5 @@
 #include "isotherm/slam/simulate/corrupt.hpp"
+#include "isotherm/base/words.hpp"
 
 #include <memory>
 #include <variant>
@@ -11,6 +12,7 @@
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "option_verb.hpp"
 #include "verbs/pose_graph_input.hpp"
+#include "verbs/truth_input.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {
@@ -40,8 +42,8 @@ struct CorruptVerb : OptionVerb<CorruptOptions> {
     const auto incorrect = count(corrupted.labels, Label::incorrect);
     const auto ignored = count(corrupted.labels, Label::ignore);
     say(flags,
-        fmt::format("corrupted: {} loops of the input, {} false loops added{}", correct,
-                    incorrect + ignored,
+        fmt::format("corrupted: {} of the input, {} added{}", counted(correct, "loop"),
+                    counted(incorrect + ignored, "false loop"),
                     ignored > 0 ? fmt::format(", {} of them consistent by chance", ignored) : ""));
     write_json(flags.json, {{"schema", "isotherm.corrupt/1"},
                             {"correct", correct},
@@ -55,7 +57,7 @@ struct CorruptVerb : OptionVerb<CorruptOptions> {
   template <class Pose>
   std::vector<Pose> true_poses(const PoseGraph<Pose>& graph) const {
     if (!ground_truth.empty()) {
-      const auto found = read_ground_truth(graph, {.path = ground_truth});
+      const auto found = read_truth(graph, {.path = ground_truth}, flags);
       std::vector<Pose> poses;
       for (std::size_t v = 0; v < found.size(); ++v) {
         if (!found[v]) {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "isotherm/slam/graph/diagnose.hpp"
 #include "isotherm/slam/graph/graph_summary.hpp"
 
 namespace isotherm::apps {
@@ -81,6 +82,19 @@ void add_summary(Json& json, const GraphSummary& summary) {
         {{"kind", suspicion.kind}, {"line", suspicion.line}, {"message", suspicion.message}});
   }
   json["suspicions"] = std::move(found);
+}
+
+Json doubts_of(const PoseGraphFile& file) {
+  Json found = Json::array();
+  std::visit(
+      [&](const auto& graph) {
+        for (const auto& doubt : diagnose(graph, edge_roles(graph))) {
+          found.push_back(
+              {{"kind", doubt.kind}, {"line", 0}, {"message", doubt.kind + "? " + doubt.message}});
+        }
+      },
+      file.graph);
+  return found;
 }
 
 template <class Pose>
@@ -169,6 +183,7 @@ void append_text(std::string& text, const Json& json, std::size_t indent) {
 Json describe(const PoseGraphFile& file) {
   Json json = start("pose-graph", file.report);
   std::visit([&](const auto& graph) { add_summary(json, summarize(graph)); }, file.graph);
+  json["doubts"] = doubts_of(file);
   const auto robots = robots_of(file);
   for (const auto& robot : robots) json["poses_of_robots"][robot.name] = robot.vertices;
   add_report(json, file.report);

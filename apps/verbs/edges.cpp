@@ -1,6 +1,5 @@
 #include <cmath>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <string>
@@ -11,6 +10,7 @@
 
 #include "console.hpp"
 #include "isotherm/base/error.hpp"
+#include "isotherm/base/words.hpp"
 #include "isotherm/geometry/points/neighbour_graph.hpp"
 #include "isotherm/geometry/points/point_cloud.hpp"
 #include "isotherm/network/io/position_file.hpp"
@@ -74,8 +74,7 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
     Input file;
     file.graph = neighbours ? geometry::nearest_neighbour_graph(cloud.points, *neighbours, context)
                             : geometry::radius_graph(cloud.points, *radius, context);
-    file.ids.resize(file.graph.vertex_count());
-    std::iota(file.ids.begin(), file.ids.end(), 0);
+    file.ids = std::move(cloud.ids);
     file.report = std::move(cloud.report);
     file.points = std::move(cloud.points);
     return file;
@@ -139,9 +138,9 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
 
   void report(const JudgeEdgesResult& result) const {
     say(flags,
-        fmt::format("{}: {} edges, {} kept, {} pruned, {} ambiguous, {:.2f} s",
-                    enum_name(options.method), result.verdicts.size(),
-                    count(result.verdicts, Verdict::keep), count(result.verdicts, Verdict::prune),
+        fmt::format("{}: {}, {} kept, {} pruned, {} ambiguous, {:.2f} s", enum_name(options.method),
+                    counted(result.verdicts.size(), "edge"), count(result.verdicts, Verdict::keep),
+                    count(result.verdicts, Verdict::prune),
                     count(result.verdicts, Verdict::ambiguous), result.seconds));
   }
 };

@@ -9,6 +9,7 @@
 #include "console.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/text_writer.hpp"
+#include "isotherm/base/words.hpp"
 #include "isotherm/spectral/eigen/embedding.hpp"
 #include "isotherm/spectral/graph/graph_file.hpp"
 #include "option_verb.hpp"
@@ -109,7 +110,7 @@ struct EmbedVerb : OptionVerb<EmbedOptions> {
     const bool null_vectors = options.method == Embedding::heat && components > 1;
     const Index available = laplacian.size() - (null_vectors ? 0 : components);
     if (available < options.dimensions) {
-      warn(flags, fmt::format("the graph has only {} coordinates", available));
+      warn(flags, fmt::format("the graph has only {}", counted(available, "coordinate")));
     }
     if (null_vectors && options.dimensions < components) {
       warn(flags, fmt::format("{} coordinates do not tell {} components apart", options.dimensions,
@@ -149,11 +150,12 @@ struct EmbedVerb : OptionVerb<EmbedOptions> {
   }
 
   void report(const EigenDecomposition& eigen, Index components) const {
-    say(flags, fmt::format("{}: {} vertices, {} components, {} eigenpairs by {}, {:.2f} s{}",
-                           enum_name(options.method), eigen.size(), components,
-                           components - eigen.null_count + eigen.count(), enum_name(eigen.method),
-                           eigen.seconds,
-                           eigen.status == EigenStatus::converged ? "" : "; not converged"));
+    say(flags, fmt::format(
+                   "{}: {}, {}, {} by {}, {:.2f} s{}", enum_name(options.method),
+                   counted(eigen.size(), "vertex", "vertices"), counted(components, "component"),
+                   counted(components - eigen.null_count + eigen.count(), "eigenpair"),
+                   enum_name(eigen.method), eigen.seconds,
+                   eigen.status == EigenStatus::converged ? "" : "; not converged"));
   }
 };
 

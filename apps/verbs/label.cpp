@@ -5,10 +5,12 @@
 #include <fmt/format.h>
 
 #include "console.hpp"
+#include "isotherm/base/words.hpp"
 #include "isotherm/slam/evaluate/ground_truth.hpp"
 #include "isotherm/slam/evaluate/labels.hpp"
 #include "option_verb.hpp"
 #include "verbs/pose_graph_input.hpp"
+#include "verbs/truth_input.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {
@@ -28,8 +30,8 @@ struct LabelVerb : OptionVerb<LabelOptions> {
     write_labels(output, labels);
     const auto incorrect = count(labels, Label::incorrect);
     const auto ignored = count(labels, Label::ignore);
-    say(flags, fmt::format("labelled {} loops: {} incorrect, {} without ground truth",
-                           labels.size(), incorrect, ignored));
+    say(flags, fmt::format("labelled {}: {} incorrect, {} without ground truth",
+                           counted(labels.size(), "loop"), incorrect, ignored));
     write_json(flags.json, {{"schema", "isotherm.label/1"},
                             {"labels", labels.size()},
                             {"correct", count(labels, Label::correct)},
@@ -41,7 +43,7 @@ struct LabelVerb : OptionVerb<LabelOptions> {
 
   template <class Pose>
   std::vector<EdgeLabel> label(const PoseGraph<Pose>& graph) const {
-    return label_candidates(graph, edge_roles(graph), read_ground_truth(graph, truth), options);
+    return label_candidates(graph, edge_roles(graph), read_truth(graph, truth, flags), options);
   }
 };
 
@@ -61,6 +63,7 @@ Verb add_label(CLI::App& root) {
   add_number(*verb, "--max-gap", label->truth.max_gap,
              "seconds to the nearest sample beyond which there is no truth; 0: any", closed(0, 1e9))
       ->default_str("0");
+  add_truth_flags(*verb, label->truth);
   label->flags.outputs
       .add(*verb, "-o,--output", label->output, "labels to write, as CSV (- for stdout)", {".csv"})
       ->required();

@@ -1,4 +1,5 @@
 #include "isotherm/network/localize/localize.hpp"
+#include "isotherm/base/words.hpp"
 
 #include <charconv>
 #include <limits>
@@ -57,8 +58,10 @@ struct LocalizeVerb : OptionVerb<LocalizeOptions> {
       write_report(explain, network_report(network, result, run));
     }
     if (!verdicts.empty()) {
-      name_ends(result.verdicts, network);
-      spectral::write_verdicts(verdicts, result.verdicts);
+      const bool numbered = number_ends(result.verdicts, network);
+      const spectral::VertexNames names = [&](std::uint64_t node) { return network.names[node]; };
+      spectral::write_verdicts(verdicts, result.verdicts,
+                               numbered ? spectral::VertexNames() : names);
     }
     write_json(flags.json, to_json(network, result));
     return result.status == LocalizeStatus::not_converged ? kNotConverged : kOk;
@@ -103,31 +106,33 @@ struct LocalizeVerb : OptionVerb<LocalizeOptions> {
     return positions;
   }
 
-  // Verdict files have numbers for vertices: the names, if all of them are numbers,
-  // else the places of the nodes in order of first appearance.
-  static void name_ends(spectral::EdgeVerdicts& all, const RangeNetwork& network) {
+  // Verdict files have numbers for vertices: the names, if all of them are numbers, which
+  // this gives back, else the places of the nodes in order of first appearance.
+  static bool number_ends(spectral::EdgeVerdicts& all, const RangeNetwork& network) {
     std::vector<std::uint64_t> ids;
     for (const auto& name : network.names) {
       const auto number = number_in(name);
-      if (!number) return;
+      if (!number) return false;
       ids.push_back(*number);
     }
     for (auto& verdict : all) {
       verdict.from = ids[verdict.from];
       verdict.to = ids[verdict.to];
     }
+    return true;
   }
 
   void report(const RangeNetwork& network, const LocalizeResult& result) const {
     const auto& all = result.verdicts;
     say(flags,
-        fmt::format("{}: {} ranges, {} kept, {} pruned, {} ambiguous, {:.2f} s",
-                    enum_name(options.method), all.size(), count(all, Verdict::keep),
+        fmt::format("{}: {}, {} kept, {} pruned, {} ambiguous, {:.2f} s", enum_name(options.method),
+                    counted(all.size(), "range"), count(all, Verdict::keep),
                     count(all, Verdict::prune), count(all, Verdict::ambiguous), result.seconds));
-    std::string line = fmt::format("{} nodes", network.node_count());
+    std::string line = counted(network.node_count(), "node");
     for (const auto& [status, name] : enum_names(NodeStatus{})) {
       const auto nodes = result.count(status);
-      if (nodes > 0) line += fmt::format(", {} {}", nodes, name);
+      const bool many_anchors = status == NodeStatus::anchor && nodes > 1;
+      if (nodes > 0) line += fmt::format(", {} {}{}", nodes, name, many_anchors ? "s" : "");
     }
     say(flags, line);
     if (!result.anchored) say(flags, "no anchors: positions are known up to an isometry");

@@ -36,6 +36,7 @@ struct OptimizeVerb : OptionVerb<OptimizeOptions> {
   template <class Pose>
   int run_on(PoseGraph<Pose>& graph, const PoseGraphFile& file) {
     const auto roles = trusted.empty() ? edge_roles(graph) : read_trusted_edges(trusted, graph);
+    warn_of_doubts(graph, roles, flags);
     const auto result =
         optimize(graph, roles, options, {flags.threads, progress_line(flags), flags.seed});
     report(result);
@@ -57,7 +58,9 @@ struct OptimizeVerb : OptionVerb<OptimizeOptions> {
     }
     graph.poses = poses;
     if (format_suffix(output) == ".tum") {
-      write_trajectory(output, Trajectory<Pose>{graph.poses, {}}, FileFormat::tum);
+      const Trajectory<Pose> trajectory{graph.poses, {}};
+      warn_of_missing_times(trajectory, FileFormat::tum, flags);
+      write_trajectory(output, trajectory, FileFormat::tum);
     } else {
       write_g2o(output, file);
     }
@@ -80,9 +83,9 @@ struct OptimizeVerb : OptionVerb<OptimizeOptions> {
     const auto shown = [](double cost, int digits) {
       return std::isfinite(cost) ? fmt::format("{:.{}g}", cost, digits) : "not finite";
     };
-    say(flags, fmt::format("{}: cost {} -> {} in {} iterations, {:.2f} s", enum_name(result.status),
+    say(flags, fmt::format("{}: cost {} -> {} in {}, {:.2f} s", enum_name(result.status),
                            shown(result.initial_cost, 6), shown(result.final_cost, 9),
-                           result.iterations, result.seconds));
+                           counted(result.iterations, "iteration"), result.seconds));
   }
 
   template <class Pose>

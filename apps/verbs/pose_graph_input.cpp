@@ -62,6 +62,31 @@ void add_graph_inputs(CLI::App& verb, std::vector<std::string>& paths, const std
   verb.add_option("input", paths, help)->required()->type_name("FILE");
 }
 
+template <class Pose>
+std::vector<slam::Doubt> warn_of_doubts(const slam::PoseGraph<Pose>& graph,
+                                        const slam::EdgeRoles& roles, const CommonFlags& flags) {
+  auto doubts = slam::diagnose(graph, roles);
+  for (const auto& doubt : doubts) {
+    // Usual in benchmarks; 'info' has it.
+    if (doubt.kind != "identical information") warn(flags, doubt.kind + "? " + doubt.message);
+  }
+  return doubts;
+}
+
+template std::vector<slam::Doubt> warn_of_doubts(const slam::PoseGraph<slam::Pose2>&,
+                                                 const slam::EdgeRoles&, const CommonFlags&);
+template std::vector<slam::Doubt> warn_of_doubts(const slam::PoseGraph<slam::Pose3>&,
+                                                 const slam::EdgeRoles&, const CommonFlags&);
+
+void warn_of_missing_times(const slam::AnyTrajectory& trajectory, slam::FileFormat format,
+                           const CommonFlags& flags) {
+  const bool known =
+      std::visit([](const auto& poses) { return !poses.timestamps.empty(); }, trajectory);
+  if (known || format == slam::FileFormat::kitti) return;
+  warn(flags, fmt::format("the poses have no times, which {} needs: pose k is given the time k",
+                          enum_name(format)));
+}
+
 std::string robots_in_words(const slam::PoseGraphFile& file) {
   const auto robots = slam::robots_of(file);
   if (robots.size() < 2) return {};

@@ -5,6 +5,8 @@
 
 #include "command.hpp"
 #include "isotherm/base/read_report.hpp"
+#include "isotherm/slam/graph/diagnose.hpp"
+#include "isotherm/slam/graph/trajectory.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 
 namespace isotherm::apps {
@@ -20,6 +22,16 @@ slam::PoseGraphFile read_input_graph(const std::vector<std::string>& paths,
 
 /// The positional argument that names them.
 void add_graph_inputs(CLI::App& verb, std::vector<std::string>& paths, const std::string& help);
+
+/// Warns of what is to be doubted about the graph as a whole before it is used, and gives all
+/// of it back.
+template <class Pose>
+std::vector<slam::Doubt> warn_of_doubts(const slam::PoseGraph<Pose>& graph,
+                                        const slam::EdgeRoles& roles, const CommonFlags& flags);
+
+/// Warns that a format which needs times has those of none, if that is so.
+void warn_of_missing_times(const slam::AnyTrajectory& trajectory, slam::FileFormat format,
+                           const CommonFlags& flags);
 
 /// "robots a (110 poses), b (95 poses)"; empty if there is but one.
 std::string robots_in_words(const slam::PoseGraphFile& file);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -7,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "console.hpp"
+#include "isotherm/base/words.hpp"
 #include "isotherm/slam/evaluate/ground_truth.hpp"
 #include "isotherm/slam/graph/trusted_edges.hpp"
 #include "isotherm/slam/graph/usable_odometry.hpp"
@@ -17,6 +19,7 @@
 #include "report/report_flags.hpp"
 #include "verbs/pose_graph_input.hpp"
 #include "verbs/prune_flags.hpp"
+#include "verbs/truth_input.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {
@@ -136,28 +139,53 @@ struct PruneVerb {
   void run_on(PoseGraph<Pose>& graph, const PoseGraphFile& file) {
     const RunContext context{flags.threads, progress_line(flags), flags.seed};
     const auto roles = trusted.empty() ? edge_roles(graph) : read_trusted_edges(trusted, graph);
-    if (flags.strict) require_usable_odometry(graph, roles);
-    PruneRun<Pose> input_run{files_title(input), options, {}};
-    if (!truth.path.empty()) input_run.truth = read_ground_truth(graph, truth);
+    if (flags.strict) require_usable_odometry(graph, roles, file);
+    PruneRun<Pose> input_run{files_title(input), options, {}, robots_of(file)};
+    if (!truth.path.empty()) input_run.truth = read_truth(graph, truth, flags);
+    const auto doubts = warn_of_doubts(graph, roles, flags);
     auto result = prune_and_optimize(graph, roles, options, context);
     report(result.decisions);
+    warn_of_loss(result.decisions.verdicts, doubts);
     std::optional<Report> page;
     if (explain.wanted()) page = pose_graph_report(graph, result, input_run, context);
     // Poses stay as they came: they are for 'optimize' to find.
     graph.constraints = std::move(result.pruned.constraints);
     if (!output.empty()) write_g2o(output, file);
-    if (!verdicts.empty()) spectral::write_verdicts(verdicts, result.decisions.verdicts);
+    if (!verdicts.empty()) {
+      const bool lettered = std::any_of(graph.ids.begin(), graph.ids.end(),
+                                        [](VertexId id) { return !robot_letter(id).empty(); });
+      spectral::write_verdicts(verdicts, result.decisions.verdicts,
+                               lettered ? vertex_name : spectral::VertexNames());
+    }
     write_json(flags.json, to_json(result.decisions, options.prune));
     if (page) write_report(explain, *page);
   }
 
   // Methods repair it, which is what --strict forbids.
   template <class Pose>
-  void require_usable_odometry(const PoseGraph<Pose>& graph, const EdgeRoles& roles) const {
+  void require_usable_odometry(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                               const PoseGraphFile& file) const {
     const auto unusable = unusable_information(graph, roles);
     if (unusable.empty()) return;
     const auto line = graph.constraints[unusable.front()].line;
-    throw ParseError({input, line, 0}, "", describe_unusable(graph, unusable));
+    throw ParseError({file.report.path, line, 0}, "", describe_unusable(graph, unusable));
+  }
+
+  // A map without its loops is seldom what was wanted.
+  void warn_of_loss(const spectral::EdgeVerdicts& all, const std::vector<Doubt>& doubts) const {
+    constexpr std::size_t kFew = 10;
+    const auto pruned = count(all, Verdict::prune);
+    if (all.size() < kFew || 10 * pruned <= 9 * static_cast<std::int64_t>(all.size())) return;
+    std::string causes;
+    for (const auto& doubt : doubts) causes += (causes.empty() ? "" : ", ") + doubt.kind + "?";
+    if (causes.empty()) {
+      causes =
+          "angles in degrees, ends swapped, information that is a covariance or in another "
+          "order?";
+    }
+    warn(flags, fmt::format("{} of {} loops are pruned. If most of them should be true: {} "
+                            "('isotherm info' shows what is odd)",
+                            pruned, all.size(), causes));
   }
 
   // What would be read and play no part is not what was meant.
@@ -179,8 +207,8 @@ struct PruneVerb {
                                      round.scale, round.pruned, round.candidates, round.threshold));
     }
     say(flags,
-        fmt::format("{}: {} loops, {} kept, {} pruned, {} ambiguous, {:.2f} s", result.method,
-                    result.verdicts.size(), count(result.verdicts, Verdict::keep),
+        fmt::format("{}: {}, {} kept, {} pruned, {} ambiguous, {:.2f} s", result.method,
+                    counted(result.verdicts.size(), "loop"), count(result.verdicts, Verdict::keep),
                     count(result.verdicts, Verdict::prune),
                     count(result.verdicts, Verdict::ambiguous), result.seconds));
   }
@@ -208,6 +236,7 @@ Verb add_prune(CLI::App& root) {
   verb->add_option("--timestamps", prune->truth.timestamps,
                    "time of each pose in seconds, one a line, where the truth needs it")
       ->type_name("FILE");
+  add_truth_flags(*verb, prune->truth);
   prune->method.add_to(*verb);
   add_common_flags(*verb, prune->flags);
   return verb_of(verb, prune);

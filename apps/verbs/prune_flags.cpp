@@ -1,11 +1,13 @@
 #include "verbs/prune_flags.hpp"
 
+#include <array>
 #include <concepts>
 #include <type_traits>
 #include <variant>
 
 #include <fmt/format.h>
 
+#include "help_formatter.hpp"
 #include "isotherm/base/error.hpp"
 
 namespace isotherm::apps {
@@ -22,7 +24,7 @@ struct Preset {
 
 const std::vector<Preset>& presets() {
   static const std::vector<Preset> all = {
-      {"datta2016", slam::datta2016(), "heat as its paper states it"}};
+      {"datta2016", slam::datta2016(), "heat as Datta et al. (2016) state it"}};
   return all;
 }
 
@@ -31,6 +33,42 @@ const Preset& preset_of(const std::string& name) {
     if (preset.name == name) return preset;
   }
   throw InvalidArgument("preset", "there is none called '" + name + "'");
+}
+
+struct MethodUse {
+  std::string_view name;
+  std::string_view use;
+};
+
+// What each method needs, when it is the one to take, and what it costs.
+constexpr std::array<MethodUse, 11> kUses = {{
+    {"consensus",
+     "the default: accepts loops that odometry and each other prove. Needs information "
+     "that can be used; some factorisations a round"},
+    {"evidence", "a probability for every loop. Needs the same, takes a few times as long"},
+    {"heat",
+     "the shape of the graph decides, also where information is missing or wrong. Needs "
+     "many loops; a sparse factorisation a scale"},
+    {"chi2",
+     "each loop against odometry alone: quickest, but only where odometry drifts no "
+     "further than it says"},
+    {"lap-line",
+     "compares the curves of the path at both ends of a loop. Needs paths driven "
+     "again, no information; quick"},
+    {"rrr",
+     "loops in groups that agree over time. Needs places seen repeatedly; an optimisation "
+     "a group"},
+    {"pcm", "the largest set of loops that agree in pairs. Up to some thousand loops"},
+    {"sc", "switchable constraints: one optimisation in which loops can be turned off"},
+    {"dcs", "the same without switches. Needs odometry that is nearly right"},
+    {"cauchy", "one optimisation under a kernel with heavy tails. Few false loops only"},
+    {"gnc", "graduated non-convexity: some ten optimisations. Many false loops"},
+}};
+
+std::string table_of_methods() {
+  std::string table = "Methods:\n";
+  for (const auto& [name, use] : kUses) table += help_row(std::string(name), std::string(use));
+  return table + "\n";
 }
 
 bool take(PruneOptions& options, std::string_view key, const Json& value) {
@@ -79,7 +117,8 @@ void PruneFlags::add_to(CLI::App& verb) {
           described)
       ->type_name("NAME");
   for (const auto& method : prune_methods()) add_fields_of(verb, method);
-  verb.footer("Each method has options of its own: isotherm prune --method NAME --help");
+  verb.footer(table_of_methods() +
+              "Each method has options of its own: isotherm prune --method NAME --help");
 }
 
 void PruneFlags::add_fields_of(CLI::App& verb, const PruneOptions& method) {

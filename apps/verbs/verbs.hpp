@@ -6,6 +6,7 @@
 namespace isotherm::apps {
 
 Verb add_info(CLI::App& root);
+Verb add_candidates(CLI::App& root);
 Verb add_convert(CLI::App& root);
 Verb add_simulate(CLI::App& root);
 Verb add_simulate_network(CLI::App& simulate);

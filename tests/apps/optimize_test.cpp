@@ -120,7 +120,8 @@ TEST_F(OptimizeCommand, TrajectoryErrors) {
   for (const char* key : {"isotherm.eval.rpe/1", "\"pairs\": 2", "\"mean\": 0.5", "\"rotation\""}) {
     EXPECT_THAT(rpe, HasSubstr(key));
   }
-  EXPECT_THAT(run_ok("eval ate a.tum b.tum --align first"), HasSubstr("the paper's ATE"));
+  EXPECT_THAT(run_ok("eval ate a.tum b.tum --align first"),
+              HasSubstr("the mean is the ATE of Datta et al."));
   EXPECT_EQ(run("eval ate a.tum b.tum --align sim").code, 2);
   EXPECT_EQ(run("eval rpe a.tum b.tum --delta 0").code, 2);
   EXPECT_EQ(run("eval ate a.tum missing.tum").code, 3);

@@ -29,8 +29,10 @@ struct EvalLoops : OptionVerb<NoOptions> {
   }
 
   static std::string to_text(const LoopMetrics& metrics) {
-    return fmt::format("precision {:.4f}  recall {:.4f}  F1 {:.4f}  AUC {:.4f}\n",
-                       metrics.precision(), metrics.recall(), metrics.f1(), metrics.auc) +
+    return fmt::format(
+               "precision {:.4f}  recall {:.4f}  F1 {:.4f}  AUC {:.4f}  "
+               "(a positive is a pruned loop)\n",
+               metrics.precision(), metrics.recall(), metrics.f1(), metrics.auc) +
            fmt::format("pruned: {} incorrect, {} correct; left: {} incorrect, {} correct",
                        metrics.tp, metrics.fp, metrics.fn, metrics.tn) +
            fmt::format(" ({} ambiguous); {} ignored\n", metrics.ambiguous, metrics.ignored);
@@ -55,7 +57,8 @@ struct EvalLoops : OptionVerb<NoOptions> {
 
 Verb add_eval_loops(CLI::App& eval) {
   auto loops = std::make_shared<EvalLoops>();
-  CLI::App* verb = eval.add_subcommand("loops", "precision and recall of verdicts");
+  CLI::App* verb =
+      eval.add_subcommand("loops", "precision and recall of verdicts; a positive is a pruned loop");
   verb->add_option("verdicts", loops->verdicts, "verdicts written by prune")->required();
   verb->add_option("labels", loops->labels, "labels of the same edges")->required();
   loops->add_flags(*verb);

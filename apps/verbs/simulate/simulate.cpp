@@ -1,4 +1,5 @@
 #include "isotherm/slam/simulate/simulate.hpp"
+#include "isotherm/base/words.hpp"
 
 #include <memory>
 #include <string>
@@ -43,9 +44,10 @@ struct SimulateWorld : OptionVerb<Options> {
     const auto roles = edge_roles(graph);
     const double drift =
         (graph.poses.back().translation() - simulation.truth.back().translation()).norm();
-    say(flags,
-        fmt::format("{}: {} poses, {} odometry edges, {} loops, odometry ends {:.2f} m off", world,
-                    graph.vertex_count(), roles.odometry.size(), roles.candidates.size(), drift));
+    say(flags, fmt::format("{}: {}, {}, {}, odometry ends {:.2f} m off", world,
+                           counted(graph.ids.size(), "pose"),
+                           counted(roles.odometry.size(), "odometry edge"),
+                           counted(roles.candidates.size(), "loop"), drift));
     write_json(flags.json, {{"schema", "isotherm.simulate/1"},
                             {"world", world},
                             {"poses", graph.vertex_count()},

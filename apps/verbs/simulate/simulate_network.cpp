@@ -1,4 +1,5 @@
 #include "isotherm/network/simulate/simulate_network.hpp"
+#include "isotherm/base/words.hpp"
 
 #include <cmath>
 #include <memory>
@@ -68,10 +69,10 @@ struct SimulateNetwork : OptionVerb<NetworkOptions> {
     const auto labelled = labels_of(simulated);
     if (!labels.empty()) slam::write_labels(labels, labelled);
     const auto wrong = slam::count(labelled, slam::Label::incorrect);
-    say(flags,
-        fmt::format("network: {} nodes, {} anchors, {} ranges up to {:.4f}, {} of them wrong",
-                    network.node_count(), network.landmarks.size(), network.ranges.size(),
-                    simulated.radius, wrong));
+    say(flags, fmt::format("network: {}, {}, {} up to {:.4f}, {} of them wrong",
+                           counted(network.node_count(), "node"),
+                           counted(network.landmarks.size(), "anchor"),
+                           counted(network.ranges.size(), "range"), simulated.radius, wrong));
     write_json(flags.json, {{"schema", "isotherm.simulate/1"},
                             {"world", "network"},
                             {"nodes", network.node_count()},

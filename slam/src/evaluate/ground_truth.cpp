@@ -49,31 +49,50 @@ std::optional<Pose> pose_at(const TimedPoses<Pose>& samples, double time, double
   return interpolate(last.pose, next.pose, (time - last.time) / (next.time - last.time));
 }
 
-std::vector<double> read_timestamps(const std::string& path) {
-  TextReader reader(path);
-  std::vector<double> times;
-  while (reader.next_line()) {
-    if (reader.at_line_end()) continue;
-    times.push_back(reader.number("a time in seconds"));
+template <class Pose, class Sample>
+Pose adapt(const Sample& pose, Axes axes) {
+  if constexpr (std::is_same_v<Sample, Pose3>) {
+    const Pose3 turned = axes == Axes::camera ? camera_to_vehicle(pose) : pose;
+    if constexpr (std::is_same_v<Pose, Pose2>) {
+      return flatten(turned);
+    } else {
+      return turned;
+    }
+  } else if constexpr (std::is_same_v<Pose, Pose2>) {
+    return pose;
+  } else {
+    return lift(pose);
   }
-  return times;
 }
 
 template <class Pose>
 std::vector<std::optional<Pose>> from_pose_graph(const PoseGraph<Pose>& graph,
-                                                 const PoseGraphFile& file) {
-  const auto* truth = std::get_if<PoseGraph<Pose>>(&file.graph);
-  if (truth == nullptr) {
-    throw InvalidArgument("ground-truth",
-                          file.report.path + " has poses of another dimension than the graph");
-  }
-  if (truth->poses.empty())
-    throw InvalidArgument("ground-truth", file.report.path + " has no vertex poses");
-  std::vector<std::optional<Pose>> poses(graph.ids.size());
-  for (std::size_t v = 0; v < poses.size(); ++v) {
-    if (const auto position = truth->find(graph.ids[v])) poses[v] = truth->poses[*position];
-  }
-  return poses;
+                                                 const PoseGraphFile& file, Axes axes) {
+  return std::visit(
+      [&](const auto& truth) {
+        if (truth.poses.empty()) {
+          throw InvalidArgument("ground-truth", file.report.path + " has no vertex poses");
+        }
+        std::vector<std::optional<Pose>> poses(graph.ids.size());
+        for (std::size_t v = 0; v < poses.size(); ++v) {
+          const auto position = truth.find(graph.ids[v]);
+          if (position) poses[v] = adapt<Pose>(truth.poses[*position], axes);
+        }
+        return poses;
+      },
+      file.graph);
+}
+
+// Half a truth is more often that of other poses, under the same numbers.
+template <class Pose>
+void require_most(const std::vector<std::optional<Pose>>& poses, const GroundTruthSource& source) {
+  const auto known = count_known(poses);
+  if (source.partial || 2 * known >= poses.size()) return;
+  throw InvalidArgument("ground-truth",
+                        source.path + " has a pose for " + std::to_string(known) + " of " +
+                            std::to_string(poses.size()) +
+                            " vertices only; are ids, or times, those of the graph? (--partial "
+                            "accepts it)");
 }
 
 template <class Pose>
@@ -84,9 +103,11 @@ std::vector<std::optional<Pose>> match_samples(const PoseGraph<Pose>& graph,
   std::vector<std::optional<Pose>> poses(n);
   if (source.timestamps.empty()) {
     if (samples.size() != n) {
-      throw InvalidArgument("timestamps", "needed: " + source.path + " has " +
-                                              std::to_string(samples.size()) +
-                                              " poses for a graph of " + std::to_string(n));
+      throw InvalidArgument("ground-truth",
+                            source.path + " has no ids, and " + std::to_string(samples.size()) +
+                                " poses for a graph of " + std::to_string(n) +
+                                "; --timestamps FILE gives the time of each vertex, by which they "
+                                "are matched");
     }
     for (std::size_t v = 0; v < n; ++v) poses[v] = samples[v].pose;
     return poses;
@@ -100,35 +121,15 @@ std::vector<std::optional<Pose>> match_samples(const PoseGraph<Pose>& graph,
   return poses;
 }
 
-// A pose in space as seen from above. KITTI poses are those of a camera, whose z
-// points forward and x to the right; the others have z up.
-Pose2 flatten(const Pose3& pose, FileFormat format) {
-  const Eigen::Matrix3d r = pose.rotation_matrix();
-  const Eigen::Vector3d& t = pose.translation();
-  if (format == FileFormat::kitti) return {t.z(), -t.x(), std::atan2(-r(0, 2), r(2, 2))};
-  return {t.x(), t.y(), std::atan2(r(1, 0), r(0, 0))};
-}
-
-template <class Pose, class Sample>
-Pose adapt(const Sample& pose, FileFormat format) {
-  if constexpr (std::is_same_v<Pose, Sample>) {
-    return pose;
-  } else if constexpr (std::is_same_v<Pose, Pose2>) {
-    return flatten(pose, format);
-  } else {
-    return lift(pose);
-  }
-}
-
 // The samples of a trajectory in order of time; without times, in file order.
 template <class Pose>
-TimedPoses<Pose> timed_poses(const AnyTrajectory& any, FileFormat format) {
+TimedPoses<Pose> timed_poses(const AnyTrajectory& any, Axes axes) {
   return std::visit(
-      [format](const auto& trajectory) {
+      [axes](const auto& trajectory) {
         TimedPoses<Pose> samples;
         for (std::size_t k = 0; k < trajectory.poses.size(); ++k) {
           const double time = trajectory.timestamps.empty() ? 0.0 : trajectory.timestamps[k];
-          samples.push_back({time, adapt<Pose>(trajectory.poses[k], format)});
+          samples.push_back({time, adapt<Pose>(trajectory.poses[k], axes)});
         }
         std::stable_sort(samples.begin(), samples.end(),
                          [](const auto& a, const auto& b) { return a.time < b.time; });
@@ -149,18 +150,25 @@ std::vector<std::optional<Pose>> read_ground_truth(const PoseGraph<Pose>& graph,
   if (!(source.max_gap >= 0.0)) throw InvalidArgument("max-gap", "must not be negative");
   TextReader reader(source.path);
   const FileFormat format = detect_format(reader);
+  std::vector<std::optional<Pose>> poses;
   if (content_of(format) == FileContent::pose_graph) {
     if (!source.timestamps.empty()) {
       throw InvalidArgument("timestamps", "have no use: " + source.path + " is matched by id");
     }
-    return from_pose_graph(graph, read_pose_graph(reader, format));
+    poses = from_pose_graph(graph, read_pose_graph(reader, format), source.axes);
+  } else {
+    const auto file = read_trajectory(reader, format);
+    if (!source.timestamps.empty() && !has_timestamps(file.trajectory)) {
+      throw InvalidArgument("ground-truth",
+                            source.path + " has no times to match with " + source.timestamps);
+    }
+    const bool camera = source.axes == Axes::automatic && format == FileFormat::kitti &&
+                        std::is_same_v<Pose, Pose2>;
+    poses = match_samples(
+        graph, timed_poses<Pose>(file.trajectory, camera ? Axes::camera : source.axes), source);
   }
-  const auto file = read_trajectory(reader, format);
-  if (!source.timestamps.empty() && !has_timestamps(file.trajectory)) {
-    throw InvalidArgument("ground-truth",
-                          source.path + " has no times to match with " + source.timestamps);
-  }
-  return match_samples(graph, timed_poses<Pose>(file.trajectory, format), source);
+  require_most(poses, source);
+  return poses;
 }
 
 template std::vector<std::optional<Pose2>> read_ground_truth(const PoseGraph<Pose2>&,

@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 
 #include "isotherm/base/error.hpp"
+#include "isotherm/base/statistics.hpp"
 
 namespace isotherm::slam {
 namespace {
@@ -174,6 +175,21 @@ RelativeError relative_pose_error(const PosePairs<Pose>& pairs,
   return {summarize(std::move(translation)), summarize(std::move(rotation))};
 }
 
+template <class Pose>
+double motion_disagreement(const PosePairs<Pose>& pairs) {
+  constexpr std::size_t kStretch = 10;
+  std::vector<double> shares;
+  for (std::size_t k = 0; k + kStretch < pairs.estimate.size(); k += kStretch) {
+    const typename Pose::Translation estimated =
+        (pairs.estimate[k].inverse() * pairs.estimate[k + kStretch]).translation();
+    const typename Pose::Translation expected =
+        (pairs.truth[k].inverse() * pairs.truth[k + kStretch]).translation();
+    const double length = std::max(estimated.norm(), expected.norm());
+    if (length > 0.0) shares.push_back((estimated - expected).norm() / length);
+  }
+  return shares.empty() ? 0.0 : median(shares);
+}
+
 template struct PosePairs<Pose2>;
 template struct PosePairs<Pose3>;
 template PosePairs<Pose2> pair_poses(const std::vector<Pose2>&,
@@ -188,6 +204,8 @@ template Pose2 align(const PosePairs<Pose2>&, Alignment);
 template Pose3 align(const PosePairs<Pose3>&, Alignment);
 template ErrorStatistics absolute_trajectory_error(const PosePairs<Pose2>&, Alignment);
 template ErrorStatistics absolute_trajectory_error(const PosePairs<Pose3>&, Alignment);
+template double motion_disagreement(const PosePairs<Pose2>&);
+template double motion_disagreement(const PosePairs<Pose3>&);
 template RelativeError relative_pose_error(const PosePairs<Pose2>&, const RelativeErrorOptions&);
 template RelativeError relative_pose_error(const PosePairs<Pose3>&, const RelativeErrorOptions&);
 

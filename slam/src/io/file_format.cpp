@@ -24,7 +24,10 @@ bool is_name(std::string_view token) {
 // PyFG names its vertices by a letter and a number where g2o has an id, and
 // gives a time stamp first (landmarks have none).
 bool has_named_vertex(const std::vector<std::string_view>& tokens) {
-  return (tokens.size() > 1 && is_name(tokens[1])) || (tokens.size() > 2 && is_name(tokens[2]));
+  double stamp = 0.0;
+  if (tokens.size() > 2 && parse_number(tokens[1], stamp)) return is_name(tokens[2]);
+  const bool landmark = tokens.front() == "VERTEX_XY" || tokens.front() == "VERTEX_XYZ";
+  return landmark && tokens.size() > 1 && is_name(tokens[1]);
 }
 
 FileFormat format_of_record(const std::vector<std::string_view>& tokens) {
@@ -145,8 +148,12 @@ FileFormat require_format(TextReader& reader) {
   if (format != FileFormat::unknown) return format;
   const auto start = reader.peek();
   if (start.empty()) throw ParseError({reader.path(), 0, 0}, "", "the file is empty");
-  throw ParseError({reader.path(), 1, 0}, std::string(start.substr(0, start.find('\n'))),
-                   "unknown format; expected " + joined_enum_names<FileFormat>(", ").substr(9));
+  const auto first = start.substr(0, start.find('\n'));
+  const bool semicolons = first.find(';') != std::string_view::npos;
+  throw ParseError({reader.path(), 1, 0}, std::string(first),
+                   std::string(semicolons ? "fields are separated by semicolons, expected commas"
+                                          : "unknown format") +
+                       "; expected " + joined_enum_names<FileFormat>(", ").substr(9));
 }
 
 }  // namespace isotherm::slam

@@ -39,6 +39,19 @@ double PoseFields::angle() {
   return wrap_angle(radians);
 }
 
+Pose2 PoseFields::planar_step() {
+  const Pose2 step = planar();
+  // A heading may have been added up over turns, what is measured between two poses not.
+  const auto where = reader_.location();
+  double stated = 0.0;
+  if (parse_number(reader_.text_from(where.column), stated) &&
+      std::abs(stated) > 2.0 * std::numbers::pi) {
+    report_.add_note({"turn beyond a full one", where, format_number(stated),
+                      "edge with more than a full turn: are angles in degrees?"});
+  }
+  return step;
+}
+
 Pose2 PoseFields::planar() {
   const double x = reader_.number("x");
   const double y = reader_.number("y");

@@ -18,6 +18,8 @@ class PoseFields {
 
   /// x y theta
   Pose2 planar();
+  /// The same of an edge, which notes a turn beyond a full one.
+  Pose2 planar_step();
   /// x y z qx qy qz qw
   Pose3 spatial();
   /// x y z roll pitch yaw, with R = Rz(yaw) Ry(pitch) Rx(roll)

@@ -164,10 +164,10 @@ class PoseGraphReader {
         return vertex(file_.spatial, [this] { return fields_.spatial_euler(); });
       case Tag::edge_se2:
         return edge(
-            file_.planar, [this] { return fields_.planar(); }, kG2oOrder2);
+            file_.planar, [this] { return fields_.planar_step(); }, kG2oOrder2);
       case Tag::edge2:
         return edge(
-            file_.planar, [this] { return fields_.planar(); }, kToroOrder2);
+            file_.planar, [this] { return fields_.planar_step(); }, kToroOrder2);
       case Tag::edge_se3:
         return edge(
             file_.spatial, [this] { return fields_.spatial(); }, kG2oOrder3);
@@ -176,7 +176,7 @@ class PoseGraphReader {
             file_.spatial, [this] { return fields_.spatial_euler(); }, kG2oOrder3);
       case Tag::switchable_se2:
       case Tag::mixture_se2:
-        return switchable(file_.planar, [this] { return fields_.planar(); });
+        return switchable(file_.planar, [this] { return fields_.planar_step(); });
       case Tag::switchable_se3:
         return switchable(file_.spatial, [this] { return fields_.spatial(); });
       case Tag::fix:

@@ -176,4 +176,14 @@ TrajectoryFile read_trajectory(const std::string& path, const ReadOptions& optio
   return read_trajectory(reader, options);
 }
 
+std::vector<double> read_timestamps(const std::string& path) {
+  TextReader reader(path);
+  std::vector<double> times;
+  while (reader.next_line()) {
+    if (reader.at_line_end()) continue;
+    times.push_back(reader.number("a time in seconds"));
+  }
+  return times;
+}
+
 }  // namespace isotherm::slam

@@ -12,7 +12,7 @@
 namespace isotherm::spectral {
 namespace {
 
-constexpr std::string_view kHeader = "edge,from,to,verdict,score,threshold,stage\n";
+constexpr std::string_view kHeader = "edge,from,to,verdict,score,threshold,stage";
 
 // A score or threshold may be infinite (nothing was split, say), which CSV
 // numbers elsewhere must not be.
@@ -25,10 +25,12 @@ double score_field(const CsvReader& csv, std::size_t column, std::string_view wh
 
 }  // namespace
 
-void write_verdicts(const std::string& path, const EdgeVerdicts& verdicts) {
+void write_verdicts(const std::string& path, const EdgeVerdicts& verdicts,
+                    const VertexNames& names) {
   OutputFile file(path);
   std::string row;
   file.write(kHeader);
+  file.write(names ? ",from_name,to_name\n" : "\n");
   for (const auto& verdict : verdicts) {
     row.clear();
     append_number(row, verdict.edge);
@@ -44,6 +46,7 @@ void write_verdicts(const std::string& path, const EdgeVerdicts& verdicts) {
     append_number(row, verdict.threshold);
     row += ',';
     row += verdict.stage;
+    if (names) row += ',' + names(verdict.from) + ',' + names(verdict.to);
     row += '\n';
     file.write(row);
   }

@@ -100,4 +100,10 @@ template <class Pose>
 RelativeError relative_pose_error(const PosePairs<Pose>& pairs,
                                   const RelativeErrorOptions& options = {});
 
+/// How differently the two move: of stretches over ten poses, the median distance between the
+/// estimated and the true motion as a share of the longer of the two; from 0 to 2, a few per
+/// cent where both are of one body with one kind of axes. 0 if nothing moves.
+template <class Pose>
+double motion_disagreement(const PosePairs<Pose>& pairs);
+
 }  // namespace isotherm::slam

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "isotherm/base/read_report.hpp"
 #include "isotherm/base/text_reader.hpp"
@@ -30,6 +31,10 @@ TrajectoryFile read_trajectory(TextReader& reader, const ReadOptions& options = 
 /// The same where the format is known from detect_format().
 TrajectoryFile read_trajectory(TextReader& reader, FileFormat format,
                                const ReadOptions& options = {});
+
+/// Reads times in seconds, one a line.
+/// @throws FileError, ParseError
+std::vector<double> read_timestamps(const std::string& path);
 
 /// Writes TUM, KITTI, EuRoC or planar rows. Planar poses are lifted to z = 0
 /// where the format is spatial; where it needs time stamps and there are none,

@@ -55,7 +55,9 @@ void visit_fields(Options& options, Visitor&& visit) {
   visit("scales", options.scales, "diffusion times, descending; none: by the graph",
         closed(0, 1e12));
   visit("threshold", options.threshold, "rule that splits the distances of a scale");
-  visit("konst", options.konst, "deviations above the mean, for mean-sigma; one or one a scale",
+  visit("konst", options.konst,
+        "k of the mean-sigma rule, which prunes above mean + k deviations; one for all scales, "
+        "or one per scale",
         closed(-1e6, 1e6));
   visit("min_separation", options.min_separation,
         "share of variance an adaptive split must explain", closed(0, 1));

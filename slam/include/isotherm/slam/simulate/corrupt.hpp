@@ -74,13 +74,15 @@ struct CorruptOptions {
 template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, CorruptOptions>
 void visit_fields(Options& options, Visitor&& visit) {
-  visit("style", options.style, "whose false loop closures to imitate");
+  visit("style", options.style,
+        "whose false loops to imitate: those of Vertigo's generator (Suenderhauf, 2012), or "
+        "of the heat-kernel paper (Datta et al., 2016)");
   visit("type", options.type, "which vertices they join");
   visit("count", options.count, "how many to add", closed(-1, 1e7));
   visit("ratio", options.ratio, "how many to add per loop of the input", closed(-1, 1000));
   visit("fraction", options.fraction, "their share among all loops afterwards, below 1",
         closed(-1, 0.999));
-  visit("group_size", options.group_size, "edges a group; 0: 10 (vertigo) or 5 (paper)",
+  visit("group_size", options.group_size, "loops per group; 0: 10 (vertigo) or 5 (paper)",
         closed(0, 1e7));
   visit("information", options.information, "what they claim about their accuracy");
   visit("shuffle", options.shuffle, "mix them among the other loops instead of appending them");
