@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include <nanoflann.hpp>
 
 #include "isotherm/base/random.hpp"
 #include "isotherm/base/statistics.hpp"
+#include "prune/consensus/estimate/log_normal.hpp"
 #include "prune/consensus/pairs/loop_pair.hpp"
 
 namespace isotherm::slam::detail {
@@ -68,17 +68,29 @@ void NearDensity<Pose>::fit(const ReducedGraph<Pose>& graph) {
   center_inverse_ = Pose::exp(turn).inverse();
   inverse_deviation_.setOnes();  // until each is known
   reach_ = 0.0;
-  log_peak_ = -0.5 * Pose::kDof * std::log(2.0 * std::numbers::pi);
   for (int d = 0; d < Pose::kDof; ++d) {
     const double mad = median_over([&](const auto& m) { return std::abs(offset(m.T)[d]); });
-    const double own = median_over([d](const auto& m) { return m.covariance(d, d); });
-    const double deviation =
-        std::sqrt(kDeviationOfMad * mad * kDeviationOfMad * mad + own + step[d]);
-    inverse_deviation_[d] = 1.0 / deviation;
-    log_peak_ -= std::log(deviation);
-    if (d < Pose::kDim) reach_ = std::max(reach_, kReach * deviation);
+    spread_[d] = kDeviationOfMad * mad * kDeviationOfMad * mad;
+    own_[d] = median_over([d](const auto& m) { return m.covariance(d, d); });
+    const double near = std::sqrt(spread_[d] + own_[d] + step[d]);
+    inverse_deviation_[d] = 1.0 / near;
+    if (d < Pose::kDim) reach_ = std::max(reach_, kReach * near);
   }
   reach_ += center_.norm();
+  for (const auto& loop : loops) measured_.push_back(offset(loop.measured.T));
+}
+
+// f is normal around the median or has the shape of k, with even odds: measurements are often
+// much alike, those of false loops above all, and some are not.
+template <class Pose>
+double NearDensity<Pose>::log_false_density(Index loop, double scale) const {
+  const Tangent& wide = measured_[loop];
+  const Tangent variance = spread_ + std::max(scale, 1.0) * own_;
+  const Tangent ratio = inverse_deviation_.cwiseProduct(variance.cwiseSqrt()).cwiseInverse();
+  const double nearer = wide.squaredNorm() - wide.cwiseProduct(ratio).squaredNorm();
+  const double more = ratio.array().log().sum() + 0.5 * nearer;  // log of normal over wide
+  return inverse_deviation_.array().log().sum() - 0.5 * Pose::kDof * kLog2Pi - std::log(2.0) +
+         std::max(more, 0.0) + std::log1p(std::exp(-std::abs(more)));
 }
 
 template <class Pose>
@@ -106,7 +118,7 @@ void NearDensity<Pose>::find_places(const ReducedGraph<Pose>& graph) {
   }
 }
 
-// In units of the deviations of q.
+// In units of the deviations of k.
 template <class Pose>
 typename Pose::Tangent NearDensity<Pose>::offset(const Pose& T) const {
   Tangent d = (center_inverse_ * T).log();
@@ -151,7 +163,7 @@ std::array<double, kProposalClasses> NearDensity<Pose>::log_mean(
   }
   std::array<double, kProposalClasses> result;
   for (std::size_t c = 0; c < kProposalClasses; ++c) {
-    result[c] = log_peak_ + std::log(inside[c] / pairs[c]);
+    result[c] = std::log(inside[c] / pairs[c]);
   }
   return result;
 }

@@ -18,19 +18,24 @@ std::size_t proposal_class(const ReducedGraph<Pose>& graph, Index loop) {
 
 /// How easily two poses are near each other on a map by chance.
 ///
-/// A front end proposes pairs of poses that look near. A false one joins any pair, a true one
-/// a pair that is near on the map, so that the odds of a true loop against a false one are
-/// N(z; h, S) / q_mean: q is the density of what loops measure, fitted robustly to all of them,
-/// and q_mean its mean over random pairs of poses that span about as many vertices, on the map
-/// in question. On a map shrunk to a point every pair is near, and no loop proves anything.
+/// A front end proposes pairs of poses that look near. A false loop joins any pair and measures
+/// z with the density f of what loops measure; a true one joins a pair that is near on the map,
+/// with probability in proportion to a kernel k of their relative pose h, so that the odds of
+/// true against false are N(z; h, S) k(h) / (f(z) k_mean): k_mean is the mean of k over random
+/// pairs of poses that span about as many vertices, on the map in question. On a map shrunk to
+/// a point every pair is near, and no loop proves anything. Since h is near z, k(z) stands for
+/// k(h).
 template <class Pose>
 class NearDensity {
  public:
   /// Draws the pairs; the same for every map. `graph` must have loops and outlive this object.
   explicit NearDensity(const ReducedGraph<Pose>& graph);
 
-  /// log q_mean of each proposal class that has a loop, with the graph's nodes at `poses`.
+  /// log k_mean of each proposal class, with the graph's nodes at `poses`.
   std::array<double, kProposalClasses> log_mean(const std::vector<Pose>& poses) const;
+
+  /// log f(z) / k(z) of a loop's measurement z, with `scale` the factor on loops' covariances.
+  double log_false_density(Index loop, double scale) const;
 
  private:
   using Tangent = typename Pose::Tangent;
@@ -50,12 +55,14 @@ class NearDensity {
   Pose center_inverse_;
   typename Pose::Translation center_;
   Tangent inverse_deviation_;
-  double log_peak_ = 0.0;
+  Tangent spread_;                 // squared deviations of what loops measure, less
+  Tangent own_;                    // their own stated variances
+  std::vector<Tangent> measured_;  // offset of each loop's measurement
   std::vector<Place> places_;
   std::vector<Index> chain_;          // of each place
   std::vector<std::size_t> anchors_;  // places in random order
   double stride_ = 1.0;               // vertices from place to place
-  double reach_ = 0.0;                // beyond it q is nothing
+  double reach_ = 0.0;                // beyond it k is nothing
 };
 
 extern template class NearDensity<Pose2>;

@@ -26,9 +26,10 @@ struct Explanation {
 
 /// The log evidence of an explanation: of the accepted set A and the scales,
 ///
-///     log p(z_A | odometry, scales) - sum over A of log q_mean + log pi(A) + log pi(scales)
+///     log p(z_A | odometry, scales) - sum over A of log (f k_mean / k)
+///         + log pi(A) + log pi(scales)
 ///
-/// with p by Laplace's approximation from the factor that the estimate holds, q_mean as in
+/// with p by Laplace's approximation from the factor that the estimate holds, f and k as in
 /// NearDensity, pi(A) the Beta-binomial of a fraction of which nothing is known. The scales are
 /// log-normal around what the file states, a factor of ten in the standard deviation being one
 /// deviation. Which loops are worse than most (ScaleShares) is integrated out by variational
@@ -48,7 +49,7 @@ class Objective {
   const ReducedGraph<Pose>& graph() const noexcept { return graph_; }
   const Runs<Pose>& runs() const noexcept { return runs_; }
 
-  /// log q_mean of each class of loops on the map with nodes at `poses`.
+  /// log k_mean of each class of loops on the map with nodes at `poses`.
   NearByClass near(const std::vector<Pose>& poses) const { return near_.log_mean(poses); }
 
   /// The density that a loop's is held against: that of loops near by chance; for one that
