@@ -9,6 +9,7 @@ of shell that makes it; the exit code is then 1.
 """
 import argparse
 import json
+import math
 import os
 import random
 import re
@@ -138,9 +139,12 @@ def arguments_of(verb, options, rng):
                                  "--dimension", "--align")
         if rng.random() < 0.2 and not common and "|" not in option.kind and "," not in value:
             try:
-                config[option.flag[2:].replace("-", "_")] = json.loads(value)
+                number = json.loads(value)
             except ValueError:
                 continue
+            if not isinstance(number, (int, float)) or not math.isfinite(number):
+                continue
+            config[option.flag[2:].replace("-", "_")] = number
         else:
             line.append(f"{option.flag}={value}")
         refused = refused or wrong

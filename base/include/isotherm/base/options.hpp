@@ -11,8 +11,9 @@
 ///
 /// An options aggregate `O` may offer `visit_fields(O&, visitor)`, found by
 /// argument-dependent lookup, which calls `visitor(name, reference, help)` once
-/// a field. Command-line flags, configuration files and Python keyword
-/// arguments are all made from that one list. An enumeration used as a field
+/// a field, with the field's Range (range.hpp) as a fourth argument where that is a
+/// number or a list of them. Command-line flags, help, configuration files and
+/// validation are all made from that one list. An enumeration used as a field
 /// offers `enum_names(E)`, a table of its values and their names.
 namespace isotherm {
 
