@@ -30,6 +30,7 @@ VERBS = {  # the verb and its positional arguments, and what it may write
     "optimize": ["GRAPH"],
     "label --ground-truth truth.g2o": ["GRAPH"],
     "corrupt": ["GRAPH"],
+    "candidates --odometry truth.g2o": ["list.csv"],
     "edges": ["PLAIN"],
     "embed": ["PLAIN"],
     "localize": ["RANGES"],
@@ -167,6 +168,8 @@ def make_inputs(command):
         file.write("EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n")
     with open("graph.csv", "w", encoding="utf-8") as file:
         file.writelines(f"{v},{(v + step) % 25},1\n" for v in range(25) for step in (1, 2))
+    with open("list.csv", "w", encoding="utf-8") as file:
+        file.writelines(["from,to\n", *(f"{v},{v + 20}\n" for v in range(0, 20, 3))])
     with open("cloud.csv", "w", encoding="utf-8") as file:
         file.writelines(f"{v % 5},{v // 5}\n" for v in range(25))
 
@@ -236,7 +239,8 @@ def main():
             line, refused = arguments_of(verb, known[verb], rng)
             outputs = []
             if not verb.startswith(("eval", "info")):
-                graph = verb.startswith(("prune", "optimize", "corrupt", "simulate"))
+                graph = verb.startswith(("prune", "optimize", "corrupt", "candidates",
+                                          "simulate"))
                 plain = verb == "simulate network"
                 outputs = ["out.csv" if plain or not graph else "out.g2o"]
                 line += ["-o", outputs[0]]
