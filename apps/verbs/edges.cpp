@@ -167,8 +167,8 @@ Verb add_edges(CLI::App& root) {
       ->excludes(neighbours)
       ->excludes(radius);
   verb->add_option("--trusted", edges->trusted,
-                    "edges (from,to) that are true, for --method heat-multiscale")
-       ->type_name("FILE");
+                   "edges (from,to) that are true, for --method heat-multiscale")
+      ->type_name("FILE");
   auto& outputs = edges->flags.outputs;
   outputs.add(*verb, "-o,--output", edges->output, "kept edges to write, as CSV (- for stdout)",
               {".csv"});

@@ -150,12 +150,12 @@ struct EmbedVerb : OptionVerb<EmbedOptions> {
   }
 
   void report(const EigenDecomposition& eigen, Index components) const {
-    say(flags, fmt::format(
-                   "{}: {}, {}, {} by {}, {:.2f} s{}", enum_name(options.method),
-                   counted(eigen.size(), "vertex", "vertices"), counted(components, "component"),
-                   counted(components - eigen.null_count + eigen.count(), "eigenpair"),
-                   enum_name(eigen.method), eigen.seconds,
-                   eigen.status == EigenStatus::converged ? "" : "; not converged"));
+    say(flags,
+        fmt::format("{}: {}, {}, {} by {}, {:.2f} s{}", enum_name(options.method),
+                    counted(eigen.size(), "vertex", "vertices"), counted(components, "component"),
+                    counted(components - eigen.null_count + eigen.count(), "eigenpair"),
+                    enum_name(eigen.method), eigen.seconds,
+                    eigen.status == EigenStatus::converged ? "" : "; not converged"));
   }
 };
 
