@@ -196,7 +196,7 @@ class Rounds {
 /// Whether `other` finds so many more false edges that chance does not explain it: those had
 /// vouched for each other.
 bool explains_more(const Judgement& other, const Judgement& than) {
-  constexpr double kDeviations = 3.0;
+  constexpr double kDeviations = 5.0;
   const double count = other.groups.false_count;
   return count - than.groups.false_count > kDeviations * std::sqrt(count);
 }

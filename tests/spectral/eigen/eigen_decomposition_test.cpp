@@ -260,5 +260,18 @@ TEST(EigenDecomposition, RejectsBadOptionsAndCanBeCancelled) {
   EXPECT_THROW(smallest_eigenpairs(laplacian, options), Cancelled);
 }
 
+TEST(EigenDecomposition, NormalisedWeightsOverSixteenDecadesAreFlaggedNotRefused) {
+  for (const int seed : {1, 2, 3, 4, 5}) {
+    Random random(seed);
+    const auto graph = spread_weights(loopy_path(700, 700, random), 16.0, random);
+    const auto eigen = smallest_eigenpairs(Laplacian(graph, LaplacianKind::normalised),
+                                           {.count = 5, .null_vectors = false});
+    EXPECT_TRUE(eigen.vectors.allFinite()) << seed;
+    if (eigen.status == EigenStatus::converged) {
+      EXPECT_GT(eigen.values.minCoeff(), 0.0) << seed;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace isotherm::spectral

@@ -1,6 +1,7 @@
 #include "isotherm/spectral/sparse/laplacian_solver.hpp"
 
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -26,6 +27,20 @@ detail::GroundedLaplacian grounded_combinatorial(const Laplacian& laplacian,
   return grounded;
 }
 
+/// The factor of a grounded matrix. Where rounding has left nothing of a pivot, the diagonal is
+/// raised by as much as rounding may have taken from it.
+detail::CholmodFactor factor_of(SparseMatrix& lower) {
+  try {
+    return {lower, detail::FactorKind::known_definite};
+  } catch (const NumericalError&) {
+    constexpr double kRaised = 1.0 + 16.0 * std::numeric_limits<double>::epsilon();
+    for (Index column = 0; column < lower.outerSize(); ++column) {
+      lower.coeffRef(column, column) *= kRaised;
+    }
+    return {lower, detail::FactorKind::known_definite};
+  }
+}
+
 }  // namespace
 
 struct LaplacianSolver::Impl {
@@ -43,7 +58,7 @@ LaplacianSolver::LaplacianSolver(const Laplacian& laplacian) : impl_(std::make_u
     impl_->scaling = laplacian.degrees().cwiseSqrt();
   impl_->grounded = grounded_combinatorial(laplacian, impl_->scaling);
   if (impl_->grounded.lower.rows() > 0) {
-    impl_->factor.emplace(impl_->grounded.lower, detail::FactorKind::known_definite);
+    impl_->factor.emplace(factor_of(impl_->grounded.lower));
   }
   impl_->reduced.resize(impl_->grounded.lower.rows());
 }
