@@ -1,11 +1,9 @@
-"""KITTI: ground truth, the paper's densified loops, and recognised places."""
+"""KITTI: ground truth and recognised places."""
 
 import numpy as np
 
 import planar
 
-# Copies of a loop to either side. The paper does not say how many it made.
-COPIES = 4
 # Loops made from ground truth: metres and radians.
 SIGMA = np.array([0.1, 0.1, 0.01])
 NEAR = 5.0  # metres between frames that show the same place, as in the candidate lists
@@ -21,35 +19,6 @@ def true_poses(data, sequence):
 
 def edges(data, sequence):
     return planar.read_edges(data / "paper" / "kitti" / f"kitti_{sequence}.g2o")
-
-
-def densified(data, sequence):
-    """Every loop (i, j) and its copies (i + k, j + k), carried along by odometry."""
-    all_edges = edges(data, sequence)
-    steps = {edge.start: edge.pose for edge in all_edges if edge.is_odometry()}
-    taken = {(edge.start, edge.end) for edge in all_edges}
-
-    def along(start, count):
-        pose = np.zeros(3)
-        for k in range(count):
-            pose = planar.compose(pose, steps[start + k])
-        return pose
-
-    def moved(vertex, k):
-        return along(vertex, k) if k >= 0 else planar.inverse(along(vertex + k, -k))
-
-    result = list(all_edges)
-    for loop in (edge for edge in all_edges if not edge.is_odometry()):
-        for k in range(-COPIES, COPIES + 1):
-            start, end = loop.start + k, loop.end + k
-            if (start, end) in taken or min(start, end) < 0 or max(start, end) > len(steps):
-                continue
-            taken.add((start, end))
-            pose = planar.compose(planar.between(moved(loop.start, k), loop.pose),
-                                  moved(loop.end, k))
-            pose[2] = planar.wrap(pose[2])
-            result.append(planar.Edge(start, end, pose, loop.information))
-    return result
 
 
 def recognised_places(data, sequence, candidates, seed):

@@ -17,8 +17,9 @@ using testing::HasSubstr;
 using testing::Not;
 
 constexpr const char* kVerbs[] = {
-    "info",  "simulate city",    "corrupt",  "prune",          "label",    "eval loops", "edges",
-    "embed", "simulate network", "localize", "eval positions", "optimize", "eval ate",   "convert"};
+    "info",     "simulate city", "corrupt",          "prune",    "label",          "eval loops",
+    "edges",    "embed",         "simulate network", "localize", "eval positions", "optimize",
+    "eval ate", "convert",       "densify"};
 
 class Contract : public CommandTest {
  protected:

@@ -48,5 +48,6 @@
 #include "isotherm/slam/prune/prune.hpp"
 #include "isotherm/slam/prune/rrr.hpp"
 #include "isotherm/slam/simulate/corrupt.hpp"
+#include "isotherm/slam/simulate/densify.hpp"
 #include "isotherm/slam/simulate/simulate.hpp"
 #include "isotherm/spectral/edges/verdict_file.hpp"

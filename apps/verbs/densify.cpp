@@ -1,0 +1,57 @@
+#include "isotherm/slam/simulate/densify.hpp"
+
+#include <memory>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "console.hpp"
+#include "isotherm/slam/io/pose_graph_file.hpp"
+#include "option_verb.hpp"
+#include "verbs/pose_graph_input.hpp"
+#include "verbs/verbs.hpp"
+
+namespace isotherm::apps {
+namespace {
+
+struct DensifyVerb : OptionVerb<slam::DensifyOptions> {
+  std::string input;
+  std::string output;
+
+  int run() {
+    if (resolve_or_dump()) return kOk;
+    const auto file = read_input_graph(input, flags);
+    return std::visit([this](const auto& graph) { return densify_graph(graph); }, file.graph);
+  }
+
+  template <class Pose>
+  int densify_graph(const slam::PoseGraph<Pose>& graph) {
+    const auto roles = slam::edge_roles(graph);
+    const auto dense = slam::densify(graph, roles, options);
+    slam::write_g2o(output, dense);
+    const auto added = dense.constraint_count() - graph.constraint_count();
+    say(flags, fmt::format("densified: {} loops of the input, {} copies added",
+                           roles.candidates.size(), added));
+    write_json(flags.json, {{"schema", "isotherm.densify/1"},
+                            {"loops", roles.candidates.size()},
+                            {"copies_added", added},
+                            {"options", options_to_json(options)}});
+    return kOk;
+  }
+};
+
+}  // namespace
+
+Verb add_densify(CLI::App& root) {
+  auto densify = std::make_shared<DensifyVerb>();
+  CLI::App* verb =
+      root.add_subcommand("densify", "replicate sparse loop closures in their neighbourhood");
+  verb->add_option("input", densify->input, "pose graph (- for stdin)")->required();
+  verb->add_option("-o,--output", densify->output, "pose graph to write (- for stdout)")
+      ->required()
+      ->type_name("FILE");
+  densify->add_flags(*verb);
+  return {verb, [densify] { return densify->run(); }};
+}
+
+}  // namespace isotherm::apps
