@@ -9,11 +9,23 @@ namespace {
 constexpr std::size_t kLineWidth = 80;
 constexpr std::size_t kNameWidth = 30;
 
+// A list of choices that is too long for a line goes on below.
+std::string broken_at_choices(std::string name) {
+  const std::string indent = "      ";
+  for (std::size_t start = 0; name.size() - start > kLineWidth;) {
+    const auto bar = name.rfind('|', start + kLineWidth - 1);
+    if (bar == std::string::npos || bar <= start + indent.size()) break;
+    name.insert(bar + 1, '\n' + indent);
+    start = bar + 2;
+  }
+  return name;
+}
+
 }  // namespace
 
 std::string help_row(const std::string& name, const std::string& text) {
-  std::string page = "  " + name;
-  std::size_t column = page.size();
+  std::string page = broken_at_choices("  " + name);
+  std::size_t column = page.size() - (page.rfind('\n') + 1);
   const auto to_text_column = [&] {
     if (column + 1 > kNameWidth) {
       page += '\n';
