@@ -142,7 +142,10 @@ struct PruneVerb {
     if (flags.strict) require_usable_odometry(graph, roles, file);
     PruneRun<Pose> input_run{files_title(input), options, {}, robots_of(file)};
     if (!truth.path.empty()) input_run.truth = read_truth(graph, truth, flags);
-    const auto doubts = warn_of_doubts(graph, roles, flags);
+    auto doubts = warn_of_doubts(graph, roles, flags);
+    if (file.report.notes.contains("turn beyond a full one")) {
+      doubts.push_back({"angles in degrees", ""});  // said when they were read
+    }
     auto result = prune_and_optimize(graph, roles, options, context);
     report(result.decisions);
     warn_of_loss(result.decisions.verdicts, doubts);

@@ -262,7 +262,7 @@ function trustedOf(
     key: `trusted-${robot}`,
     label: `${nouns.trusted} of ${name}`,
     pairs: Int32Array.from(pairs[robot]),
-    colour: `--series-${1 + (robot % ROBOT_COLOURS)}`,
+    colour: `--robot-${1 + (robot % ROBOT_COLOURS)}`,
   }));
 }
 

@@ -50,7 +50,7 @@ class CandidateTable {
       const button = html('button', { type: 'button', title: column.help }, column.label);
       button.addEventListener('click', () => this.sortBy(column.key));
       const kind = column.numeric ? 'number' : 'text';
-      const cell = html('div', { role: 'columnheader', class: `cell ${kind}` }, button);
+      const cell = html('div', { role: 'columnheader', class: `cell ${kind} col-${column.key}` }, button);
       this.heads.set(column.key, cell);
       return cell;
     });
@@ -183,7 +183,7 @@ class CandidateTable {
       const kind = column.numeric ? 'number' : 'text';
       return html(
         'div',
-        { role: 'gridcell', class: `cell ${kind}` },
+        { role: 'gridcell', class: `cell ${kind} col-${column.key}` },
         html('span', { class: extra.trim() || undefined }, column.text(candidate)),
       );
     });

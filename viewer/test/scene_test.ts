@@ -50,8 +50,8 @@ test('robots have paths of their own, each with a name and a colour', () => {
   const layers = buildScene(model, model.layouts[0], 10).layers;
   const paths = layers.filter(({ key }) => key.startsWith('trusted'));
   assert.deepEqual(paths.map(({ key, colour, lines }) => [key, colour, lines.length]), [
-    ['trusted-0', '--series-1', 4],
-    ['trusted-1', '--series-2', 2],
+    ['trusted-0', '--robot-1', 4],
+    ['trusted-1', '--robot-2', 2],
   ]);
   const labels = legendOf(model).map(({ label, count }) => `${label} ${count}`);
   assert.ok(labels.includes('odometry of a 2') && labels.includes('odometry of b 1'), labels.join());

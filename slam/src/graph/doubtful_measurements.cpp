@@ -19,7 +19,9 @@ namespace {
 
 constexpr std::size_t kMostLoops = 300;  // those over the shortest stretches of odometry
 constexpr int kFewestFits = 5;
-constexpr int kClearly = 4;  // so many times more loops must speak for another reading
+// So many times more loops must speak for another reading, by which most of all must fit:
+// false loops fit one reading or another by chance.
+constexpr int kClearly = 4;
 // Standard deviations within which a loop counts as fitting: files are often optimistic.
 constexpr double kWidth = 6.0;
 
@@ -75,6 +77,7 @@ class Fits {
   struct Balance {
     int stated = 0;  // loops that fit only as they are
     int read = 0;    // only if they are read so
+    int all = 0;     // if they are read so
   };
   Balance with(const Reading<Pose>& reading) const {
     PoseGraph<Pose> other = graph_;
@@ -83,7 +86,7 @@ class Fits {
     }
     const Flags read = fitting(OdometryChain<Pose>(other, roles_), reading.of_loops);
     return {static_cast<int>((stated_ && !read).count()),
-            static_cast<int>((read && !stated_).count())};
+            static_cast<int>((read && !stated_).count()), static_cast<int>(read.count())};
   }
 
  private:
@@ -121,8 +124,9 @@ std::vector<Doubt> doubt_measurements(const PoseGraph<Pose>& graph, const EdgeRo
   Doubt best;
   int most = kFewestFits;
   for (const auto& reading : readings<Pose>()) {
-    const auto [stated, read] = fits.with(reading);
-    if (read < most || read <= kClearly * stated) continue;
+    const auto [stated, read, all] = fits.with(reading);
+    const bool most_fit = 3 * static_cast<std::size_t>(all) >= 2 * fits.tested();
+    if (read < most || read <= kClearly * stated || !most_fit) continue;
     most = read + 1;
     best = {reading.kind, std::to_string(read) + " of " + counted(fits.tested(), "loop") +
                               " over short stretches fit odometry only " + reading.saying + ", " +
