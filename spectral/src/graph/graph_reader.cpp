@@ -2,7 +2,6 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -21,35 +20,7 @@ struct RawEdge {
   std::uint64_t from = 0;
   std::uint64_t to = 0;
   double weight = 1.0;
-  std::uint64_t line = 0;
 };
-
-// Many programs list an undirected edge once from each end. Of the two the first stays.
-void join_directions(std::vector<RawEdge>& edges, ReadReport& report) {
-  const auto ends = [](const RawEdge& edge) { return std::minmax(edge.from, edge.to); };
-  std::vector<std::size_t> order(edges.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::tuple(ends(edges[a]), edges[a].weight) <
-           std::tuple(ends(edges[b]), edges[b].weight);
-  });
-  std::vector<bool> repeats(edges.size(), false);
-  for (std::size_t i = 1; i < order.size(); ++i) {
-    const auto& first = edges[order[i - 1]];
-    const auto& second = edges[order[i]];
-    const bool mirrored = first.from == second.to && first.to == second.from &&
-                          first.from != first.to && first.weight == second.weight;
-    if (!mirrored || repeats[order[i - 1]]) continue;
-    repeats[order[i]] = true;
-    report.add_note(
-        {"edge in both directions",
-         {report.path, second.line, 0},
-         "",
-         "the edge of line " + std::to_string(first.line) + ", from the other end; both are one"});
-  }
-  std::size_t next = 0;
-  std::erase_if(edges, [&](const RawEdge&) { return repeats[next++]; });
-}
 
 bool usable_weight(double weight) { return std::isfinite(weight) && weight > 0.0; }
 
@@ -93,7 +64,6 @@ GraphFile finish_edge_list(std::vector<RawEdge> edges, ReadReport report, std::u
     throw ParseError({report.path, 0, 0}, "",
                      "no edge; expected rows of from, to and weight, or a MatrixMarket matrix");
   }
-  join_directions(edges, report);
   return build_graph(edges, std::move(report));
 }
 
@@ -123,7 +93,7 @@ GraphFile read_comma_list(TextReader& text, ReadReport report) {
   while (csv.next_row()) {
     if (edges.empty()) require_vertices(csv, from);
     RawEdge edge{csv.unsigned_integer(from, "the first vertex"),
-                 csv.unsigned_integer(to, "the second vertex"), 1.0, csv.line_number()};
+                 csv.unsigned_integer(to, "the second vertex"), 1.0};
     const bool weighted = csv.has_header() ? named_weight.has_value() : csv.field_count() > 2;
     if (weighted) {
       const auto column = named_weight.value_or(2);
@@ -150,7 +120,7 @@ GraphFile read_blank_list(TextReader& text, ReadReport report) {
     }
     if (std::exchange(first, false) && has_names(text.line())) continue;
     RawEdge edge{text.unsigned_integer("the first vertex"),
-                 text.unsigned_integer("the second vertex"), 1.0, text.line_number()};
+                 text.unsigned_integer("the second vertex"), 1.0};
     if (!text.at_line_end()) {
       edge.weight = text.number("a weight");
       if (!usable_weight(edge.weight)) text.fail(kExpectedWeight);

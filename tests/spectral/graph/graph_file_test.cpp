@@ -51,18 +51,6 @@ TEST(ReadGraph, NamesMayStandAboveBlanks) {
             "f:1:1: expected the first vertex, an integer in [0, 2^64) (got 'to')");
 }
 
-TEST(ReadGraph, BothDirectionsAreOneEdge) {
-  for (const char* text : {"from,to,weight\n0,1,2\n1,2,3\n2,1,3\n1,0,2\n0,1,2\n",
-                           "0 1 2\n1 2 3\n2 1 3\n1 0 2\n0 1 2\n"}) {
-    const auto file = parse(text);
-    ASSERT_EQ(file.graph.edge_count(), 3) << text;
-    EXPECT_EQ(file.graph.edge(2).to, 1) << "parallel edges of one direction stay";
-    EXPECT_THAT(file.report.notes, ElementsAre(Pair("edge in both directions", 2)));
-  }
-  EXPECT_EQ(parse("0 1 2\n1 0 3\n").graph.edge_count(), 2) << "another weight";
-  EXPECT_EQ(parse("0 0\n0 0\n").graph.edge_count(), 2);
-}
-
 TEST(ReadGraph, PointsAndOtherSeparatorsAreTold) {
   EXPECT_EQ(error_of("id,x,y\n0,1,2\n"),
             "f: these are points, not edges; 'isotherm edges' joins points by --neighbours or "

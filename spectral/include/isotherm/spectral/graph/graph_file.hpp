@@ -12,15 +12,14 @@ namespace isotherm::spectral {
 
 /// A weighted graph as a file has it.
 struct GraphFile {
-  WeightedGraph graph;             ///< edges in the order of the file
+  WeightedGraph graph;             ///< edge k is the k-th edge of the file
   std::vector<std::uint64_t> ids;  ///< the file's number of each vertex, ascending
   ReadReport report;
 };
 
 /// Reads a weighted graph, telling the format by its content: an edge list
 /// (`from to [weight]` a row, separated by commas or blanks, with or without
-/// column names; weights default to 1; an edge with the same weight from either end is one,
-/// which is noted) or a symmetric sparse matrix in
+/// column names; weights default to 1) or a symmetric sparse matrix in
 /// MatrixMarket coordinate format (entry (i, j) is the weight of edge {i, j};
 /// a matrix stored in full must be symmetric; the diagonal is left out).
 ///
