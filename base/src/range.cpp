@@ -16,7 +16,9 @@ void require_in_range(std::string_view option, double value, const Range& range)
 
 void require_in_range(std::string_view option, const std::vector<double>& values,
                       const Range& range) {
-  if (values.empty()) throw InvalidArgument(std::string(option), "must not be empty");
+  if (values.empty() && !range.may_be_none) {
+    throw InvalidArgument(std::string(option), "must not be empty");
+  }
   for (const double value : values) require_in_range(option, value, range);
 }
 

@@ -40,7 +40,7 @@ TEST_F(Configuration, TakesNumbersAsTheyStand) {
       {R"({"calibrate": 1})", "calibrate: has the wrong type"},
       {R"({"significance": 0.5})", "significance: must be in (0, 0.5)"},
       {R"({"scales": [1, "2"]})", "scales: has the wrong type"},
-      {R"({"method": "heat", "scales": []})", "scales: must not be empty"},
+      {R"({"method": "heat", "konst": []})", "konst: must not be empty"},
       {R"({"method": 3})", "method: has the wrong type"},
   };
   for (const auto& wrong : cases) {

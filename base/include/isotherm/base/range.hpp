@@ -18,6 +18,7 @@ struct Range {
   double high = 0.0;
   bool has_low = true;
   bool has_high = true;
+  bool may_be_none = false;  ///< of a list: that there is no value
 
   bool contains(double value) const noexcept {
     return std::isfinite(value) && (has_low ? value >= low : value > low) &&
@@ -30,6 +31,12 @@ constexpr Range open(double low, double high) { return {low, high, false, false}
 constexpr Range left_open(double low, double high) { return {low, high, false, true}; }
 constexpr Range right_open(double low, double high) { return {low, high, true, false}; }
 
+/// Of a list that may be empty.
+constexpr Range or_none(Range range) {
+  range.may_be_none = true;
+  return range;
+}
+
 /// As mathematics writes it: "[0, 1)".
 std::string to_string(const Range& range);
 
@@ -40,7 +47,8 @@ void require_in_range(std::string_view option, Integer value, const Range& range
   require_in_range(option, static_cast<double>(value), range);
 }
 
-/// @throws InvalidArgument if there are no values, or one of them is outside the range
+/// @throws InvalidArgument if one of the values is outside the range, or if there are none where
+/// the range asks for some
 void require_in_range(std::string_view option, const std::vector<double>& values,
                       const Range& range);
 

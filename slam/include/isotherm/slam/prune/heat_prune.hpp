@@ -53,7 +53,7 @@ template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, HeatPruneOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit("scales", options.scales, "diffusion times, descending; none: by the graph",
-        closed(0, 1e12));
+        or_none(closed(0, 1e12)));
   visit("threshold", options.threshold, "rule that splits the distances of a scale");
   visit("konst", options.konst,
         "k of the mean-sigma rule, which prunes above mean + k deviations; one for all scales, "

@@ -108,7 +108,8 @@ void visit_fields(Options& options, Visitor&& visit) {
   visit("threshold", options.threshold, "but for heat, rank: what scores are compared with");
   visit("konst", options.konst, "deviations above the mean, for mean-sigma", closed(-1e6, 1e6));
   visit("scales", options.scales,
-        "heat-multiscale: diffusion times, descending; none: by the graph", closed(0, 1e12));
+        "heat-multiscale: diffusion times, descending; none: by the graph",
+        or_none(closed(0, 1e12)));
   visit("tolerance", options.tolerance, "affinity, heat-multiscale: error allowed in heat",
         left_open(0, 1));
 }
