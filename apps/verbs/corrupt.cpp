@@ -11,8 +11,8 @@
 #include "isotherm/slam/graph/odometry.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "option_verb.hpp"
-#include "verbs/pose_graph_input.hpp"
-#include "verbs/truth_input.hpp"
+#include "verbs/input/pose_graph_input.hpp"
+#include "verbs/input/truth_input.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {

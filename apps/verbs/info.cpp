@@ -5,7 +5,7 @@
 #include "isotherm/slam/io/file_format.hpp"
 #include "option_verb.hpp"
 #include "verbs/describe.hpp"
-#include "verbs/pose_graph_input.hpp"
+#include "verbs/input/pose_graph_input.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {

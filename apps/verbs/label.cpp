@@ -9,8 +9,8 @@
 #include "isotherm/slam/evaluate/ground_truth.hpp"
 #include "isotherm/slam/evaluate/labels.hpp"
 #include "option_verb.hpp"
-#include "verbs/pose_graph_input.hpp"
-#include "verbs/truth_input.hpp"
+#include "verbs/input/pose_graph_input.hpp"
+#include "verbs/input/truth_input.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {

@@ -14,7 +14,7 @@
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm/slam/io/trajectory_file.hpp"
 #include "option_verb.hpp"
-#include "verbs/pose_graph_input.hpp"
+#include "verbs/input/pose_graph_input.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {

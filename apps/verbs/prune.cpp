@@ -17,9 +17,9 @@
 #include "isotherm/spectral/edges/verdict_file.hpp"
 #include "report/build/pose_graph_report.hpp"
 #include "report/report_flags.hpp"
-#include "verbs/pose_graph_input.hpp"
+#include "verbs/input/pose_graph_input.hpp"
+#include "verbs/input/truth_input.hpp"
 #include "verbs/prune_flags.hpp"
-#include "verbs/truth_input.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {

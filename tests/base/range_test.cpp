@@ -45,6 +45,11 @@ TEST(Range, HasEndsThatBelongToItOrNot) {
   EXPECT_EQ(to_string(left_open(0, 1e12)), "(0, 1e+12]");
 }
 
+TEST(Range, MayAllowAListToBeEmpty) {
+  EXPECT_NO_THROW(require_in_range("scales", std::vector<double>(), or_none(closed(0, 1))));
+  EXPECT_THROW(require_in_range("scales", {2.0}, or_none(closed(0, 1))), InvalidArgument);
+}
+
 TEST(Range, IsThatOfEveryFieldThatStatesOne) {
   EXPECT_EQ(field_refused({}), "");
   EXPECT_EQ(field_refused({.count = 0}), "count");

@@ -8,7 +8,7 @@
 #include "console.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm/slam/io/trajectory_file.hpp"
-#include "verbs/truth_input.hpp"
+#include "verbs/input/truth_input.hpp"
 
 namespace isotherm::apps {
 namespace {

@@ -1,4 +1,4 @@
-#include "verbs/truth_input.hpp"
+#include "verbs/input/truth_input.hpp"
 
 #include <type_traits>
 

@@ -1,4 +1,4 @@
-#include "verbs/pose_graph_input.hpp"
+#include "verbs/input/pose_graph_input.hpp"
 
 #include <algorithm>
 #include <map>
