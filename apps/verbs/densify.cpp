@@ -20,7 +20,7 @@ struct DensifyVerb : OptionVerb<slam::DensifyOptions> {
 
   int run() {
     if (resolve_or_dump()) return kOk;
-    const auto file = read_input_graph(input, flags);
+    const auto file = read_input_graph({input}, flags);
     return std::visit([this](const auto& graph) { return densify_graph(graph); }, file.graph);
   }
 
@@ -47,11 +47,11 @@ Verb add_densify(CLI::App& root) {
   CLI::App* verb =
       root.add_subcommand("densify", "replicate sparse loop closures in their neighbourhood");
   verb->add_option("input", densify->input, "pose graph (- for stdin)")->required();
-  verb->add_option("-o,--output", densify->output, "pose graph to write (- for stdout)")
-      ->required()
-      ->type_name("FILE");
+  densify->flags.outputs
+      .add(*verb, "-o,--output", densify->output, "pose graph to write (- for stdout)", {".g2o"})
+      ->required();
   densify->add_flags(*verb);
-  return {verb, [densify] { return densify->run(); }};
+  return verb_of(verb, densify);
 }
 
 }  // namespace isotherm::apps

@@ -4,7 +4,6 @@
 #include <set>
 #include <utility>
 
-#include "isotherm/base/error.hpp"
 #include "isotherm/slam/graph/odometry.hpp"
 
 namespace isotherm::slam {
@@ -46,9 +45,7 @@ class Densifier {
 
 }  // namespace
 
-void DensifyOptions::validate() const {
-  if (copies < 1 || copies > 1000) throw InvalidArgument("copies", "must be in [1, 1000]");
-}
+void DensifyOptions::validate() const { require_fields_in_range(*this); }
 
 template <class Pose>
 PoseGraph<Pose> densify(const PoseGraph<Pose>& graph, const EdgeRoles& roles,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "isotherm/base/range.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 
 namespace isotherm::slam {
@@ -20,7 +21,7 @@ struct DensifyOptions {
 template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, DensifyOptions>
 void visit_fields(Options& options, Visitor&& visit) {
-  visit("copies", options.copies, "copies of a loop on either side");
+  visit("copies", options.copies, "copies of a loop on either side", closed(1, 1000));
 }
 
 /// The graph with every loop (i, j) replicated between (i + k, j + k), k = ±1 ... ±copies, at the
