@@ -21,8 +21,8 @@ using spectral::Verdict;
 
 // Factors on the stated covariances of odometry and of loops to start from: one climb cannot leave
 // a sharp scale that explains a few loops and refutes the rest, nor a wide one.
-const std::array<detail::CovarianceScale, 4> kStarts = {
-    {{1.0, 1.0}, {100.0, 1.0}, {0.01, 0.01}, {1.0, 0.01}}};
+const std::array<detail::CovarianceScale, 6> kStarts = {
+    {{1.0, 1.0}, {100.0, 1.0}, {0.01, 0.01}, {1.0, 0.01}, {100.0, 100.0}, {1.0, 100.0}}};
 constexpr double kNegligible = 1e-9;  // weight of an explanation
 
 // Of one that keeps every loop nothing is left to explain otherwise. Scales at which the normal

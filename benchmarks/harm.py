@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""How many true loops each method prunes from clean graphs, however they are presented.
+
+Every graph in every variant of support/variants.py; variants that draw at random with three
+seeds. Writes docs/results/harm.md and docs/results/data/harm.csv. Every cell is kept in
+build/harm, so that an interrupted run goes on where it stopped.
+"""
+
+import csv
+import functools
+import pathlib
+import random
+import sys
+import tempfile
+
+from support import variants
+from support.experiment import ROOT, argument_parser
+from support.runs import Command, Results, run_all
+
+METHODS = ["evidence", "consensus", "gnc", "rrr"]
+SMALL = ["MIT", "CSAIL", "intel", "ring", "ringCity", "kitti_00", "kitti_02", "kitti_06",
+         "kitti_07", "kitti_09", "B25b_0.600", "tinyGrid3D", "smallGrid3D"]
+LARGE = ["parking-garage", "sphere2500", "torus3D", "sphere_a", "ais2klinik", "city10000",
+         "cubicle"]
+FEW = 5  # loops below which none can be proven
+
+
+def path_of(graph, data):
+    if graph.startswith("kitti_"):
+        return data / "paper" / "kitti" / f"{graph}.g2o"
+    if graph.startswith("B25b_"):
+        return data / "paper" / "b25b" / f"{graph}.g2o"
+    if graph.startswith("ring"):
+        return data / "posegraph2d" / graph / "originalDataset" / f"{graph}.g2o"
+    folder = "posegraph2d" if (data / "posegraph2d" / graph).exists() else "posegraph3d"
+    suffix = ".g2o.gz" if graph in ("torus3D", "sphere_a") else ".g2o"
+    return data / folder / graph / f"{graph}{suffix}"
+
+
+def measure(command, data, graph, variant, seed, method):
+    changed = variants.VARIANTS[variant](variants.read(path_of(graph, data)),
+                                         random.Random(f"{graph} {seed}"))
+    loops = sum(not edge.is_odometry for edge in changed.edges)
+    row = {"graph": graph, "variant": variant, "seed": seed, "method": method, "loops": loops}
+    if not loops:
+        return row | {"pruned": 0, "ambiguous": 0}
+    with tempfile.TemporaryDirectory() as folder:
+        work = pathlib.Path(folder)
+        variants.write(changed, work / "v.g2o")
+        answer = command.json(work, "prune", work / "v.g2o", "--method", method)
+    return row | {key: answer[key] for key in ("pruned", "ambiguous")}
+
+
+def harmed(row):
+    return row["pruned"] > (0 if row["loops"] < FEW else max(1, 0.005 * row["loops"]))
+
+
+def page(rows, unfinished, quick):
+    lines = ["# Do no harm: clean graphs, however they are presented", "",
+             f"Made by `benchmarks/harm.py{' --quick' if quick else ''}`; every cell is in [data/harm.csv](data/harm.csv). All",
+             "loops are true. A graph is harmed that loses more than one of them and more than",
+             f"0.5 %, or any where there are fewer than {FEW}.", ""]
+    methods = [m for m in METHODS if any(row["method"] == m for row in rows)]
+    lines += ["| variant | cells | " + " | ".join(f"harmed by {m} | loops pruned" for m in methods)
+              + " |", "|---" * (2 + 2 * len(methods)) + "|"]
+    for variant in variants.VARIANTS:
+        cells = [row for row in rows if row["variant"] == variant]
+        line = f"| {variant} | {len(cells) // max(len(methods), 1)} |"
+        for method in methods:
+            mine = [row for row in cells if row["method"] == method]
+            line += f" {sum(map(harmed, mine))} | {sum(row['pruned'] for row in mine)} |"
+        lines.append(line)
+    if unfinished:
+        lines += ["", f"{unfinished} runs did not end in the time allowed and are left out."]
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    parser = argument_parser(__doc__)
+    parser.add_argument("--isotherm", default=ROOT / "build" / "release" / "apps" / "isotherm")
+    parser.add_argument("--quick", action="store_true", help="small graphs, one seed")
+    parser.add_argument("--methods", nargs="+", default=METHODS, choices=METHODS)
+    parser.add_argument("--time-limit", type=int, default=600, help="seconds a run")
+    options = parser.parse_args()
+    command = Command(options.isotherm, options.time_limit)
+    results = Results(ROOT / "build" / "harm")
+    tasks = {}
+    for graph in SMALL + ([] if options.quick else LARGE):
+        for variant in variants.VARIANTS:
+            drawn = variant in variants.RANDOM and not options.quick
+            for seed in range(1, 4 if drawn else 2):
+                for method in options.methods:
+                    tasks[f"{graph}-{variant}-{seed}-{method}"] = functools.partial(
+                        measure, command, pathlib.Path(options.data), graph, variant, seed, method)
+    if not options.page_only:
+        run_all(tasks, results, options.jobs)
+    found = [row for row in map(results.get, tasks) if row]
+    rows = [row for row in found if "graph" in row]
+    target = ROOT / "docs" / "results"
+    (target / "data").mkdir(parents=True, exist_ok=True)
+    with open(target / "data" / "harm.csv", "w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, ["graph", "variant", "seed", "method", "loops", "pruned",
+                                       "ambiguous"], lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    (target / "harm.md").write_text(page(rows, len(found) - len(rows), options.quick),
+                                    encoding="utf-8")
+    print(f"harm: wrote {target / 'harm.md'}", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main()
