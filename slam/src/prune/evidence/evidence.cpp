@@ -23,10 +23,10 @@ using spectral::Verdict;
 // a sharp scale that explains a few loops and refutes the rest, nor a wide one.
 const std::array<detail::CovarianceScale, 6> kStarts = {
     {{1.0, 1.0}, {100.0, 1.0}, {0.01, 0.01}, {1.0, 0.01}, {100.0, 100.0}, {1.0, 100.0}}};
-constexpr double kNegligible = 1e-9;  // weight of an explanation
+constexpr double kNegligible = -20.0;  // log weight of an explanation
 
-// Of one that keeps every loop nothing is left to explain otherwise. Scales at which the normal
-// equations break down explain nothing.
+// What the climbs found, the best first. Of one that keeps every loop nothing is left to explain
+// otherwise. Scales at which the normal equations break down explain nothing.
 template <class Pose>
 std::vector<Explanation<Pose>> explanations(detail::Climb<Pose>& climb, bool calibrate) {
   std::vector<Explanation<Pose>> found;
@@ -39,41 +39,49 @@ std::vector<Explanation<Pose>> explanations(detail::Climb<Pose>& climb, bool cal
     }
     if (!calibrate || std::ranges::count(found.back().accepted, false) == 0) break;
   }
+  std::ranges::stable_sort(found, std::greater{}, &Explanation<Pose>::evidence);
   return found;
 }
 
-double probability_of(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
+// log(exp(a) + exp(b)).
+double log_sum(double a, double b) {
+  return std::max(a, b) + std::log1p(std::exp(-std::abs(a - b)));
+}
 
-// Of all explanations, by their evidence. One at about the scale of a better one that keeps the
-// same loops is the same peak.
+// Each loop's log odds by all explanations, by their evidence. One at about the scale of a better
+// one that keeps the same loops is the same peak. `best` is set to what the first says.
 template <class Pose>
-std::vector<double> probabilities(detail::Climb<Pose>& climb, std::vector<Explanation<Pose>> found,
+std::vector<double> mean_log_odds(detail::Climb<Pose>& climb,
+                                  const std::vector<Explanation<Pose>>& found,
                                   std::vector<detail::Standing>& best) {
-  std::ranges::stable_sort(found, std::greater{}, &Explanation<Pose>::evidence);
-  std::vector<double> sums;
-  double weights = 0.0;
-  for (auto at = found.begin(); at != found.end(); ++at) {
-    const double weight = std::exp(at->evidence - found.front().evidence);
+  best = climb.standings(found.front());
+  std::vector<double> log_true;
+  std::vector<double> log_false;
+  for (const auto& standing : best) {
+    log_true.push_back(-log_sum(0.0, -standing.log_odds));
+    log_false.push_back(-log_sum(0.0, standing.log_odds));
+  }
+  for (auto at = found.begin() + 1; at != found.end(); ++at) {
+    const double log_weight = at->evidence - found.front().evidence;
     const bool same = std::any_of(found.begin(), at, [&](const auto& better) {
       return better.accepted == at->accepted &&
              std::abs(std::log(better.scale.odometry / at->scale.odometry)) < 1.0;
     });
-    if (same || weight < kNegligible) continue;
+    if (same || log_weight < kNegligible) continue;
     const auto standings = climb.standings(*at);
-    if (at == found.begin()) best = standings;
-    sums.resize(standings.size());
     for (std::size_t k = 0; k < standings.size(); ++k) {
-      sums[k] += weight * probability_of(standings[k].log_odds);
+      const double log_odds = standings[k].log_odds;
+      log_true[k] = log_sum(log_true[k], log_weight - log_sum(0.0, -log_odds));
+      log_false[k] = log_sum(log_false[k], log_weight - log_sum(0.0, log_odds));
     }
-    weights += weight;
   }
-  for (double& sum : sums) sum /= weights;
-  return sums;
+  for (std::size_t k = 0; k < log_true.size(); ++k) log_true[k] -= log_false[k];
+  return log_true;
 }
 
-Verdict verdict_of(bool accepted, double probability, double significance) {
-  if (accepted && probability > 1.0 - significance) return Verdict::keep;
-  return probability < significance ? Verdict::prune : Verdict::ambiguous;
+Verdict verdict_of(bool accepted, double log_odds, double decisive) {
+  if (accepted && log_odds > decisive) return Verdict::keep;
+  return log_odds < -decisive ? Verdict::prune : Verdict::ambiguous;
 }
 
 std::string stage_of(bool accepted, const detail::Standing& standing) {
@@ -84,20 +92,20 @@ std::string stage_of(bool accepted, const detail::Standing& standing) {
 template <class Pose>
 void report(detail::Climb<Pose>& climb, const std::vector<Explanation<Pose>>& found,
             double significance, EvidenceResult& result) {
-  const auto& best = *std::ranges::max_element(found, {}, &Explanation<Pose>::evidence);
+  const auto& best = found.front();
   std::vector<detail::Standing> standings;
-  const auto probability = probabilities(climb, found, standings);
+  const auto log_odds = mean_log_odds(climb, found, standings);
   const double decisive = detail::log_odds_of(1.0 - significance);
-  result.details.resize(standings.size());
   for (std::size_t k = 0; k < standings.size(); ++k) {
-    const auto& [connected, chi2, evidence, log_odds] = standings[k];
     auto& verdict = result.verdicts[k];
-    verdict.score = -detail::log_odds_of(probability[k]);
+    verdict.score = -log_odds[k];
     verdict.threshold = decisive;
-    verdict.verdict = verdict_of(best.accepted[k], probability[k], significance);
+    verdict.verdict = verdict_of(best.accepted[k], log_odds[k], decisive);
     verdict.stage = stage_of(best.accepted[k], standings[k]);
-    result.details[k] = {
-        .probability = probability[k], .log_ratio = evidence, .chi2 = chi2, .connected = connected};
+    result.details.push_back({.probability = 1.0 / (1.0 + std::exp(-log_odds[k])),
+                              .log_ratio = standings[k].evidence,
+                              .chi2 = standings[k].chi2,
+                              .connected = standings[k].connected});
   }
   result.odometry_scale = best.scale.odometry;
   result.loop_scale = best.scale.loops;
@@ -108,13 +116,7 @@ void report(detail::Climb<Pose>& climb, const std::vector<Explanation<Pose>>& fo
 
 }  // namespace
 
-void EvidenceOptions::validate() const {
-  if (!(significance > 0.0 && significance < 0.5)) {
-    throw InvalidArgument("significance", "must be in (0, 0.5)");
-  }
-  if (window <= 0) throw InvalidArgument("window", "must be positive");
-  if (max_rounds <= 0) throw InvalidArgument("max_rounds", "must be positive");
-}
+void EvidenceOptions::validate() const { require_fields_in_range(*this); }
 
 template <class Pose>
 EvidenceResult judge_by_evidence(const PoseGraph<Pose>& graph, const EdgeRoles& roles,

@@ -1,6 +1,7 @@
 #include "isotherm/slam/prune/evidence.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -57,6 +58,7 @@ TYPED_TEST(EvidenceOf, FindsFalseLoopsAndSaysHowSureItIs) {
       const double probability = result.details[k].probability;
       EXPECT_EQ(verdict.verdict == Verdict::prune, verdict.score > verdict.threshold);
       EXPECT_EQ(verdict.verdict == Verdict::prune, probability < 0.01);
+      EXPECT_TRUE(std::isfinite(verdict.score)) << "however sure it is";
     }
   }
 }
