@@ -10,13 +10,7 @@
 
 namespace isotherm::slam {
 
-void ConsensusOptions::validate() const {
-  if (!(significance > 0.0 && significance < 0.5)) {
-    throw InvalidArgument("significance", "must be in (0, 0.5)");
-  }
-  if (window <= 0) throw InvalidArgument("window", "must be positive");
-  if (max_rounds <= 0) throw InvalidArgument("max_rounds", "must be positive");
-}
+void ConsensusOptions::validate() const { require_fields_in_range(*this); }
 
 template <class Pose>
 std::vector<Index> unusable_odometry(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {

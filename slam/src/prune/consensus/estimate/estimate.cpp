@@ -63,7 +63,11 @@ bool Estimate<Pose>::step() {
 template <class Pose>
 void Estimate<Pose>::update(const std::vector<bool>& accepted, const CovarianceScale& scale,
                             int max_steps) {
-  settle(accepted, scale, max_steps, [] { return false; });
+  lay_out(accepted);
+  for (int k = 0;; ++k) {
+    linearize(scale);
+    if (k == max_steps || step()) return;
+  }
 }
 
 template <class Pose>

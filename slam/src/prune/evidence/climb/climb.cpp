@@ -9,7 +9,6 @@
 namespace isotherm::slam::detail {
 namespace {
 
-constexpr int kMostDrops = 1;    // a loop dropped so often is not tried again at these scales
 constexpr double kBetter = 0.1;  // nats by which an explanation must be better to go on
 
 }  // namespace
@@ -22,13 +21,12 @@ Climb<Pose>::Climb(const Objective<Pose>& objective, const EvidenceOptions& opti
 template <class Pose>
 Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
   start(scale);
-  double before = now_.evidence;
-  do {
-    before = best_.evidence;
-    std::ranges::fill(drops_, 0);
+  for (;;) {
+    const double before = best_.evidence;
+    std::fill(dropped_.begin(), dropped_.end(), false);
     grow();
-  } while (best_.evidence > before + kBetter);
-  return std::move(best_);
+    if (best_.evidence <= before + kBetter) return std::move(best_);
+  }
 }
 
 template <class Pose>
@@ -37,7 +35,7 @@ void Climb<Pose>::start(const CovarianceScale& scale) {
   now_ = {.accepted = std::vector<bool>(loops, false), .scale = scale};
   now_.shares.loops[0] = static_cast<double>(loops);
   now_.weights.assign(loops, 1.0);
-  drops_.assign(loops, 0);
+  dropped_.assign(loops, false);
   assessment_.start_over();
   predict_runs();
   assessment_.assess(now_);
@@ -67,13 +65,11 @@ bool Climb<Pose>::move() {
   const Selection out = misfits();
   if (out.empty()) {
     const Selection batch = next_batch();
-    if (batch.empty()) return learn_from_fit();
+    if (batch.empty()) return learn_more_than(0.0);
     accept(batch);
-    return true;
+  } else if (!learn_more_than(gain_of_dropping(out))) {
+    drop(out);
   }
-  const Lesson lesson = learn(objective_, assessment_, now_);
-  const bool learn_first = options_.calibrate && lesson.gain > gain_of_dropping(out);
-  if (!learn_first || !learn_from_fit()) drop(out);
   return true;
 }
 
@@ -110,7 +106,7 @@ template <class Pose>
 void Climb<Pose>::drop(const Selection& loops) {
   for (const Index k : loops) {
     now_.accepted[k] = false;
-    ++drops_[k];
+    dropped_[k] = true;
   }
   assess();
   note(0, loops.size());
@@ -118,9 +114,9 @@ void Climb<Pose>::drop(const Selection& loops) {
 
 template <class Pose>
 typename Climb<Pose>::Selection Climb<Pose>::next_batch() const {
-  std::vector<bool> open(drops_.size());
+  std::vector<bool> open(dropped_.size());
   for (std::size_t k = 0; k < open.size(); ++k) {
-    open[k] = !now_.accepted[k] && drops_[k] < kMostDrops;
+    open[k] = !now_.accepted[k] && !dropped_[k];
   }
   auto groups = gaining_groups(objective_.runs(), open, assessment_.standings(), run_density_,
                                [&](Index k) { return assessment_.log_alternative(k); });
@@ -134,12 +130,12 @@ void Climb<Pose>::accept(const Selection& loops) {
   note(loops.size(), 0);
 }
 
-// False if nothing is left to learn.
+// Whether there was anything to learn that gains more than this.
 template <class Pose>
-bool Climb<Pose>::learn_from_fit() {
+bool Climb<Pose>::learn_more_than(double gain) {
   if (!options_.calibrate) return false;
   const Lesson lesson = learn(objective_, assessment_, now_);
-  return lesson.gain > kBetter && try_lesson(lesson);
+  return lesson.gain > std::max(gain, kBetter) && try_lesson(lesson);
 }
 
 // Whether it is better.

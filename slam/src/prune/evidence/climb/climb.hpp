@@ -42,7 +42,7 @@ class Climb {
   void drop(const Selection& loops);
   Selection next_batch() const;
   void accept(const Selection& loops);
-  bool learn_from_fit();
+  bool learn_more_than(double gain);
   bool try_lesson(const Lesson& lesson);
   void predict_runs();
   void note(std::size_t accepted, std::size_t dropped);
@@ -55,7 +55,7 @@ class Climb {
   Explanation<Pose> now_;
   Explanation<Pose> best_;
   std::vector<double> run_density_;  // log p(z | the loop before in its run)
-  std::vector<int> drops_;
+  std::vector<bool> dropped_;        // since the climb last rose; not tried again
   std::vector<EvidenceMove> moves_;
   bool settled_ = true;
 };

@@ -14,7 +14,8 @@ struct Lesson {
 /// The factors on the covariances of odometry and of loops at which the evidence is highest, to
 /// first order: variance components (Helmert), cost over redundancy, drawn towards the file by
 /// log_scale_prior(); a loop's share of the redundancy is tr(I - w Omega J C J'). And the shares
-/// of loops worse than most under which the residuals are likeliest (expectation maximisation).
+/// of loops as accurate as most and as stated under which the residuals are likeliest (expectation
+/// maximisation).
 template <class Pose>
 Lesson learn(const Objective<Pose>& objective, const Assessment<Pose>& assessment,
              const Explanation<Pose>& explanation);

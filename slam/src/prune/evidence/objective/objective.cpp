@@ -35,8 +35,9 @@ Objective<Pose>::Objective(const ReducedGraph<Pose>& graph, Index window)
 template <class Pose>
 double Objective<Pose>::log_alternative(Index loop, const NearByClass& near,
                                         double loop_scale) const {
-  if (!runs_.copied(loop))
+  if (!runs_.copied(loop)) {
     return near[proposal_class(graph_, loop)] + near_.log_false_density(loop, loop_scale);
+  }
   const double log_sigma = log_sigma_[loop] + Pose::kDof * std::log(loop_scale);
   return -0.5 * (log_sigma + Pose::kDof * kLog2Pi) - Pose::kDof;
 }

@@ -16,7 +16,7 @@ template <class Pose>
 struct Explanation {
   std::vector<bool> accepted;   ///< one a loop
   CovarianceScale scale;        ///< factors on the stated covariances; of loops, that of most
-  ScaleShares shares;           ///< of loops by how much worse they are, as believed
+  ScaleShares shares;           ///< of loops as accurate as most and as stated, as believed
   ScaleShares found;            ///< the same, as found among the accepted ones
   std::vector<double> weights;  ///< of the loops' information, by their scales; one a loop
   double scale_evidence = 0.0;  ///< ErrorScale::evidence, summed over the accepted ones
@@ -32,9 +32,9 @@ struct Explanation {
 /// with p by Laplace's approximation from the factor that the estimate holds, f and k as in
 /// NearDensity, pi(A) the Beta-binomial of a fraction of which nothing is known. The scales are
 /// log-normal around what the file states, a factor of ten in the standard deviation being one
-/// deviation. Which loops are worse than most (ScaleShares) is integrated out by variational
-/// Bayes (Bishop, Pattern Recognition and Machine Learning, 10.1), which gives a lower bound. A
-/// part that A joins to another lies anywhere on the map.
+/// deviation. Which loops are as accurate as most and which as stated (ScaleShares) is integrated
+/// out by variational Bayes (Bishop, Pattern Recognition and Machine Learning, 10.1), which gives a
+/// lower bound. A part that A joins to another lies anywhere on the map.
 ///
 /// The same number is what accepting the loops one by one adds (loop_gain), in any order.
 template <class Pose>
