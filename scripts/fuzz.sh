@@ -25,7 +25,7 @@ if [ "${harnesses[*]}" = options ]; then
 fi
 
 if ! command -v clang++-14 >/dev/null; then
-  echo "fuzz: needs clang++-14 (Debian package clang-14)" >&2
+  echo "fuzz: needs clang++-14 and libFuzzer: scripts/install-deps.sh --fuzz" >&2
   exit 1
 fi
 cmake --preset fuzz

@@ -24,13 +24,17 @@ test_commands=("chromium chromium" "node nodejs" "npm npm")
 # What scripts/check.sh calls.
 check_packages=(clang-format-14 clang-tidy-16 shellcheck git)
 
+# What scripts/fuzz.sh builds with; libFuzzer and the sanitizers are a package of their own.
+fuzz_packages=(clang-14 libclang-rt-14-dev)
+
 usage() {
   cat <<'USAGE'
-usage: scripts/install-deps.sh [--tests] [--checks] [--list]
+usage: scripts/install-deps.sh [--tests] [--checks] [--fuzz] [--list]
 
 Installs the Debian packages Isotherm is built with.
   --tests  also those that only the tests need: a browser and Node
   --checks also those that scripts/check.sh calls
+  --fuzz   also those that scripts/fuzz.sh builds with
   --list   only print which packages are missing
 USAGE
 }
@@ -55,6 +59,7 @@ for argument in "$@"; do
     --list) list_only=true ;;
     --tests) tests=true ;;
     --checks) packages+=("${check_packages[@]}") ;;
+    --fuzz) packages+=("${fuzz_packages[@]}") ;;
     --help | -h) usage; exit 0 ;;
     *) usage >&2; exit 2 ;;
   esac
