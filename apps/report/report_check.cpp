@@ -250,4 +250,16 @@ void check_report(const Json& document, const std::string& path) {
   check_rounds(whole);
 }
 
+void check_same_graph(const Json& first, const Json& second, const std::string& path) {
+  using Place = Json::json_pointer;
+  // Kind and dimension come first: nodes of another kind differ anyhow.
+  for (const char* place : {"/kind", "/dimension", "/nodes/names", "/candidates/edge",
+                            "/candidates/from", "/candidates/to"}) {
+    if (first[Place(place)] == second[Place(place)]) continue;
+    throw ParseError({path, 0, 0}, "",
+                     fmt::format("is not about the same graph as the first report: {} differs",
+                                 std::string_view(place).substr(1)));
+  }
+}
+
 }  // namespace isotherm::apps

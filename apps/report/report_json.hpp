@@ -5,6 +5,7 @@
 namespace isotherm::apps {
 
 inline constexpr const char* kReportSchema = "isotherm.report/1";
+inline constexpr const char* kComparisonSchema = "isotherm.comparison/1";
 
 /// The document, schema isotherm.report/1. Arrays are objects with one member that
 /// names the element type (f32, i32, u32, u8 or u64) and holds the little-endian

@@ -257,6 +257,71 @@ TEST_F(Report, EveryMemberOfADocumentIsChecked) {
   run_ok("report changed.json -o page.html");
 }
 
+TEST_F(Report, TwoOfOneGraphAreCompared) {
+  write_text(folder / "five.g2o", std::string(kFive));
+  run_ok("prune five.g2o --method chi2 --report chi2.json");
+  run_ok("prune five.g2o --method heat --report heat.json");
+  run_ok("report chi2.json heat.json -o both.html");
+  const auto page = read_text(folder / "both.html");
+  const std::string start = "id=\"document\">";
+  const auto from = page.find(start) + start.size();
+  const auto json = Json::parse(page.substr(from, page.find("</script>", from) - from));
+  EXPECT_EQ(json["schema"], "isotherm.comparison/1");
+  EXPECT_EQ(json["names"], Json({"chi2.json", "heat.json"}));
+  ASSERT_EQ(json["reports"].size(), 2U);
+  EXPECT_EQ(json["reports"][0], Json::parse(read_text(folder / "chi2.json")));
+  EXPECT_EQ(json["reports"][1], Json::parse(read_text(folder / "heat.json")));
+}
+
+TEST_F(Report, OnlyReportsOnOneGraphAreCompared) {
+  write_text(folder / "five.g2o", std::string(kFive));
+  auto other = std::string(kFive);
+  other.replace(other.find("811 -9 5 1"), 3, "810");
+  write_text(folder / "other.g2o", other);
+  run_ok("prune five.g2o --method chi2 --report five.json");
+  run_ok("prune other.g2o --method chi2 --report other.json");
+  const auto result = run("report five.json other.json -o both.html");
+  EXPECT_EQ(result.code, 3);
+  EXPECT_THAT(result.err, HasSubstr("other.json: is not about the same graph"));
+  EXPECT_THAT(result.err, HasSubstr("candidates/to"));
+  const auto saved = run("report five.json five.json -o both.json");
+  EXPECT_EQ(saved.code, 2);
+  EXPECT_THAT(saved.err, HasSubstr("name it .html"));
+  EXPECT_EQ(run("report five.json five.json five.json -o both.html").code, 2);
+  EXPECT_EQ(run("report five.json nowhere.json -o both.html").code, 3);
+  EXPECT_FALSE(std::filesystem::exists(folder / "both.html"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "both.json"));
+}
+
+TEST_F(Report, HeatIsThereWhereItDecided) {
+  run_ok("simulate city --poses 60 --loops 20 --seed 2 -o city.g2o");
+  const auto expect_heat = [this](const std::string& arguments, bool there) {
+    const auto json = document(arguments);
+    EXPECT_EQ(json["heat"]["scales"].empty(), !there) << arguments;
+    EXPECT_EQ(json["spectrum"]["values"].empty(), !there) << arguments;
+  };
+  expect_heat("prune city.g2o", false);
+  expect_heat("prune city.g2o --method evidence", false);
+  expect_heat("prune city.g2o --method heat", true);
+  write_text(folder / "graph.csv", "0,1\n1,2\n2,3\n3,0\n0,2\n1,3\n");
+  expect_heat("edges graph.csv --method heat", true);
+  expect_heat("edges graph.csv --method affinity", true);
+  expect_heat("edges graph.csv --method jaccard", false);
+}
+
+TEST_F(Report, LoopsThatNoOdometryReachesHaveNoChiSquaredAgainstIt) {
+  // Two robots that see each other once.
+  write_text(folder / "two.g2o",
+             "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2 10 11 1 0 0 1 0 0 1 0 1\n"
+             "EDGE_SE2 0 10 0 1 0 1 0 0 1 0 1\nEDGE_SE2 1 11 0 1 0 1 0 0 1 0 1\n");
+  const auto json = document("prune two.g2o");
+  const auto& column = json["candidates"]["columns"][0];
+  EXPECT_EQ(column["key"], "chi2_odometry");
+  for (const float value : numbers<float>(column["values"], "f32")) {
+    EXPECT_TRUE(std::isnan(value)) << value;
+  }
+}
+
 TEST_F(Report, ThePictureIsXmlWhateverTheFileIsCalled) {
   for (const std::string name :
        {"a&b<c>.g2o", "quote\"s'.g2o", "latin\xE4.g2o", "bell\x07\x1B.g2o", "\xED\xA0\x80.g2o",

@@ -43,7 +43,8 @@ export async function openReport(browser, path, { width = 1280, height = 800, me
     await dialog.dismiss();
   });
   page.on('request', (request) => {
-    if (request.url() !== url && !request.url().startsWith('data:')) {
+    // What is saved goes to disk through the page's own memory.
+    if (request.url() !== url && !/^(data|blob):/.test(request.url())) {
       problems.push(`request: ${request.url()}`);
     }
   });

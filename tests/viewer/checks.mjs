@@ -20,7 +20,7 @@ export async function checkPanels(page) {
   );
   const names = found.map(({ name }) => name);
   assert.deepEqual(names, PANELS.filter((name) => names.includes(name)), 'in their order');
-  for (const name of ['summary', 'map', 'reasons', 'options']) assert.ok(names.includes(name), name);
+  for (const name of ['summary', 'map', 'options']) assert.ok(names.includes(name), name);
   for (const { name, full } of found) assert.ok(full, `panel ${name} is empty`);
   assert.equal(await page.$$eval('.panel > .absent', (all) => all.length), 0);
 }
@@ -46,6 +46,13 @@ export async function ink(page, map = 0) {
   }, map);
 }
 
+/** What the first map tells at the pointer, and what about. */
+const tooltip = (page) =>
+  page.$eval('.stage .tooltip', (tip) => ({
+    text: tip.hidden ? '' : tip.textContent,
+    about: tip.hidden ? '' : tip.dataset.about,
+  }));
+
 /** Moves the pointer over the map until it meets an edge; where, and what the map says. */
 export async function findEdge(page) {
   const stage = await page.$('.stage');
@@ -55,8 +62,8 @@ export async function findEdge(page) {
     for (let column = 1; column < 30; ++column) {
       const [x, y] = [box.x + (column * box.width) / 30, box.y + (row * box.height) / 20];
       await page.mouse.move(x, y);
-      const said = await page.$eval('.tooltip', (tip) => (tip.hidden ? '' : tip.textContent));
-      if (said !== '') return { x, y, said };
+      const said = await tooltip(page);
+      if (said.about.includes('edge')) return { x, y, said: said.text };
     }
   }
   assert.fail('the pointer met no edge on the map');
@@ -81,6 +88,68 @@ export async function checkClick(page) {
     };
   });
   assert.deepEqual(chosen, { ends: names, inSight: true });
+}
+
+/** The pointer is told the numbers of an edge, and of a node where it meets one. */
+export async function checkHover(page) {
+  const { x, y, said } = await findEdge(page);
+  assert.match(said, /^\w+ .+ – .+: (keep|prune|ambiguous), .+\nscore: /);
+  // An edge has a node at its end: along the rows of the map there is one.
+  const box = await (await page.$('.stage')).boundingBox();
+  for (let left = x; left < box.x + box.width; left += 3) {
+    await page.mouse.move(left, y);
+    const { text: told, about } = await tooltip(page);
+    if (!about.includes('node')) continue;
+    assert.match(told, /(^|\n)\w+ .+: \(.+, .+\)/);
+    return;
+  }
+  for (let top = box.y; top < box.y + box.height; top += 5) {
+    for (let left = box.x; left < box.x + box.width; left += 5) {
+      await page.mouse.move(left, top);
+      if ((await tooltip(page)).about.includes('node')) return;
+    }
+  }
+  assert.fail('the pointer met no node');
+}
+
+/** Every chart tells values under the pointer. */
+export async function checkChartHover(page) {
+  const charts = await page.$$('.chart');
+  assert.ok(charts.length > 0);
+  for (const chart of charts) {
+    await chart.scrollIntoView();
+    await settle(page);
+    const box = await (await chart.$('.u-over')).boundingBox();
+    const told = await findValue(page, chart, box);
+    assert.match(told, /\d/, `nothing told by ${await chart.evaluate((e) => e.ariaLabel)}`);
+  }
+}
+
+async function findValue(page, chart, box) {
+  for (let row = 1; row < 16; ++row) {
+    for (let column = 1; column < 24; ++column) {
+      await page.mouse.move(box.x + (column * box.width) / 24, box.y + (row * box.height) / 16);
+      const said = await chart.$eval('.tooltip', (tip) => (tip.hidden ? '' : tip.textContent));
+      if (said !== '') return said;
+    }
+  }
+  return '';
+}
+
+/** A link leads from a pruned candidate to one that contradicts it, and from that back. */
+export async function checkConflictLinks(page) {
+  const names = () => page.$eval('#reasons dl dd', (ends) => ends.textContent);
+  const count = await page.$eval('.grid', (grid) => Number(grid.getAttribute('aria-rowcount')) - 1);
+  await page.evaluate(() => document.activeElement?.blur());
+  for (let k = 0; k < count && !(await page.$('#reasons .link')); ++k) await page.keyboard.press('n');
+  const first = await names();
+  const link = await page.$('#reasons .link');
+  const other = await link.evaluate((button) => button.textContent);
+  await link.click();
+  assert.equal(await names(), other);
+  const back = await page.$$eval('#reasons .link', (all) => all.map((button) => button.textContent));
+  assert.ok(back.includes(first), `${back} does not lead back to ${first}`);
+  await page.keyboard.press('Escape');
 }
 
 /** Filters and sorting of the table do what they say. */

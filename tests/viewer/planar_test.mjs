@@ -5,5 +5,6 @@ import { cityReport, scratchFolder } from './reports.mjs';
 import { reportSuite } from './suite.mjs';
 
 const suite = reportSuite(cityReport(scratchFolder()));
+test('loops in conflict lead to each other', () => checks.checkConflictLinks(suite.page));
 test('pruned loops come back to the result when asked for', () =>
   checks.checkPrunedSwitch(suite.page));

@@ -26,6 +26,8 @@ export function reportSuite(path, { empty = false, webgl = true, ...view } = {})
   if (!empty) {
     test('N and P step through', () => checks.checkSteps(suite.page));
     test('layers can be switched', () => checks.checkLayers(suite.page));
+    test('the pointer is told values on the map', () => checks.checkHover(suite.page));
+    test('and on every chart', () => checks.checkChartHover(suite.page));
     test('a click shows row and reasons', () => checks.checkClick(suite.page));
     test('the table filters and sorts', () => checks.checkTable(suite.page));
     test('the keyboard suffices', () => checks.checkKeyboard(suite.page));

@@ -1,54 +1,17 @@
 import uPlot from 'uplot';
+import { chartCsv } from './chart_csv';
+import { nearestPoint } from './chart_pick';
+import { chartSvg } from './chart_svg';
+import type { ChartAxis, ChartMark, ChartSeries, ChartSpec } from './chart_spec';
+import { decades } from './chart_spec';
 import { html } from './dom';
 import { number, powerOfTen } from './format';
+import { saveButtons } from './save';
 import type { Store } from './store';
 import { colour } from './theme';
 
-export interface ChartAxis {
-  label: string;
-  log?: boolean;
-  /** ends of the axis; what the data needs if left out */
-  range?: [number, number];
-}
-
-export interface ChartSeries {
-  label: string;
-  /** CSS variable */
-  colour: string;
-  kind: 'line' | 'points' | 'bars' | 'dotted-line';
-  dash?: number[];
-  values: ArrayLike<number | null>;
-}
-
-/** A line across the chart, at one value of an axis. */
-export interface ChartMark {
-  axis: 'x' | 'y';
-  value: number;
-  label: string;
-}
-
-export interface ChartSpec {
-  /** what the chart shows, for those who do not see it */
-  description: string;
-  x: ChartAxis;
-  y: ChartAxis;
-  xs: ArrayLike<number>;
-  series: ChartSeries[];
-  marks?: ChartMark[];
-}
-
 const HEIGHT = 230;
-const MOST_DECADES = 7;
 const BAR_SHARE = 0.9;
-
-// Every power of ten, or every second, third, ... where there are many.
-function decades(low: number, high: number): number[] {
-  const [first, last] = [Math.ceil(Math.log10(low) - 1e-9), Math.floor(Math.log10(high) + 1e-9)];
-  const step = Math.ceil((last - first + 1) / MOST_DECADES);
-  const splits = [];
-  for (let power = first; power <= last; power += step) splits.push(10 ** power);
-  return splits;
-}
 
 function axis(spec: ChartAxis, ink: string, faint: string, size: number): uPlot.Axis {
   return {
@@ -133,7 +96,25 @@ function drawMarks(plot: uPlot, marks: ChartMark[], ink: string): void {
   ctx.restore();
 }
 
-function create(spec: ChartSpec, element: HTMLElement): uPlot {
+/** Tells the values of the point that is nearest to the pointer, if one is near. */
+function tellValues(plot: uPlot, spec: ChartSpec, tip: HTMLElement): void {
+  const { left = -1, top = -1 } = plot.cursor;
+  const found = left < 0 ? null : nearestPoint(plot, spec, left, top);
+  tip.hidden = found === null;
+  if (!found) return;
+  tip.textContent = spec.tell?.(found.point, found.series) ?? coordinates(spec, found);
+  const [width, over] = [plot.over.clientWidth, plot.over];
+  const [x, y] = [over.offsetLeft + found.left, over.offsetTop + found.top];
+  const room = over.offsetLeft + width - tip.offsetWidth;
+  tip.style.transform = `translate(${Math.max(0, Math.min(x + 10, room))}px, ${y + 10}px)`;
+}
+
+function coordinates(spec: ChartSpec, { point, series }: { point: number; series: number }): string {
+  const { label, values } = spec.series[series];
+  return `${spec.x.label}: ${number(spec.xs[point])}\n${label}: ${number(values[point])}`;
+}
+
+function create(spec: ChartSpec, element: HTMLElement, tip: HTMLElement): uPlot {
   const [ink, faint] = [colour('--ink-soft'), colour('--line')];
   const options: uPlot.Options = {
     width: Math.max(element.clientWidth, 200),
@@ -143,46 +124,56 @@ function create(spec: ChartSpec, element: HTMLElement): uPlot {
     series: [{ label: spec.x.label }, ...spec.series.map(series)],
     legend: { live: false },
     cursor: { drag: { x: false, y: false } },
-    hooks: { draw: [(plot) => drawMarks(plot, spec.marks ?? [], ink)] },
+    hooks: {
+      draw: [(plot) => drawMarks(plot, spec.marks ?? [], ink)],
+      setCursor: [(plot) => tellValues(plot, spec, tip)],
+    },
   };
   const data = [spec.xs, ...spec.series.map(({ values }) => values)];
   return new uPlot(options, data as unknown as uPlot.AlignedData, element);
 }
 
-/** A chart that follows the theme and the width of the page. */
+/** A chart that follows the theme and the width of the page, and can be saved. */
 export class Chart {
-  readonly element = html('div', { class: 'chart', role: 'img' });
+  readonly element: HTMLElement;
+  private readonly box = html('div', { class: 'chart', role: 'img' });
+  private readonly tip = html('div', { class: 'tooltip', role: 'status', hidden: true });
   private plot: uPlot | null = null;
   private spec: ChartSpec | null = null;
 
-  constructor(store: Store) {
+  constructor(title: string, name: string, store: Store) {
+    const what = { csv: () => chartCsv(this.spec!), svg: () => chartSvg(this.spec!) };
+    this.element = html('div', { class: 'saved' }, saveButtons(title, name, what), this.box);
     store.subscribe((state, before) => {
       if (state.theme !== before.theme) this.draw();
     });
-    new ResizeObserver(() => this.resize()).observe(this.element);
+    new ResizeObserver(() => this.resize()).observe(this.box);
   }
 
   show(spec: ChartSpec): void {
     this.spec = spec;
-    this.element.setAttribute('aria-label', spec.description);
+    this.box.setAttribute('aria-label', spec.description);
     this.draw();
   }
 
   private draw(): void {
     this.plot?.destroy();
     this.plot = null;
-    if (this.spec && this.element.clientWidth > 0) this.plot = create(this.spec, this.element);
+    this.tip.hidden = true;
+    if (!this.spec || this.box.clientWidth === 0) return;
+    this.plot = create(this.spec, this.box, this.tip);
+    this.plot.root.querySelector('.u-wrap')!.append(this.tip);
   }
 
   private resize(): void {
-    if (this.plot) this.plot.setSize({ width: this.element.clientWidth, height: HEIGHT });
+    if (this.plot) this.plot.setSize({ width: this.box.clientWidth, height: HEIGHT });
     else this.draw();
   }
 }
 
-/** A chart that shows one thing for good. */
-export function chart(spec: ChartSpec, store: Store): HTMLElement {
-  const drawn = new Chart(store);
+/** A chart that shows one thing for good; `title` and `name` name the files it is saved as. */
+export function chart(title: string, name: string, spec: ChartSpec, store: Store): HTMLElement {
+  const drawn = new Chart(title, name, store);
   drawn.show(spec);
   return drawn.element;
 }

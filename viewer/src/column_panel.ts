@@ -1,9 +1,9 @@
 import { chart } from './chart';
 import { absent, html, panel } from './dom';
-import { capital, count } from './format';
+import { capital, count, quantity } from './format';
 import { thinned } from './scene';
 import type { Column, Model } from './model';
-import { VERDICTS } from './model';
+import { candidateName, VERDICTS, verdictOf } from './model';
 import type { Store } from './store';
 
 const WIDE = 100;
@@ -18,6 +18,18 @@ function extent(values: Float32Array): [number, number] {
     if (value < Infinity && value > high) high = value;
   }
   return [low, high];
+}
+
+/** Whether there is a picture to draw: what is the same for all, or unknown, has none. */
+function varies(values: Float32Array): boolean {
+  const known = values.filter((value) => !Number.isNaN(value));
+  return known.some((value) => value !== known[0]);
+}
+
+function tell(model: Model, column: Column, candidate: number): string {
+  const value = quantity(column.values[candidate], column.unit);
+  const { edge } = model.nouns;
+  return `${edge} ${candidateName(model, candidate)}: ${verdictOf(model, candidate)}\n${column.label}: ${value}`;
 }
 
 function columnChart(model: Model, store: Store, column: Column): HTMLElement {
@@ -39,17 +51,23 @@ function columnChart(model: Model, store: Store, column: Column): HTMLElement {
     {},
     html('h3', {}, capital(column.label)),
     chart(
+      model.title,
+      column.key,
       {
         description: `${column.label} of ${count(size)} ${model.nouns.edges}`,
         x: { label: `${model.nouns.edge} in order of the file` },
         y: { label: column.label + unit, log },
         xs: chosen,
-        series: VERDICTS.map((name, group) => ({
-          label: name,
-          colour: `--${name}`,
-          kind: 'points',
-          values: values(group),
-        })),
+        series: VERDICTS.flatMap((name, group) =>
+          verdict.includes(group)
+            ? [{ label: name, colour: `--${name}`, kind: 'points', values: values(group) }]
+            : [],
+        ),
+        tell: (point) => tell(model, column, chosen[point]),
+        names: {
+          columns: [model.nouns.edge],
+          of: (point) => [candidateName(model, chosen[point])],
+        },
       },
       store,
     ),
@@ -59,11 +77,11 @@ function columnChart(model: Model, store: Store, column: Column): HTMLElement {
 
 /** The numbers of every candidate, in order of the file: chi-squared, residuals. */
 export function columnPanel(model: Model, store: Store): HTMLElement {
-  const charted = model.candidates.columns.filter((column) => column.charted);
+  const charted = model.candidates.columns.filter(({ charted: wanted, values }) => wanted && varies(values));
   const what = { pose_graph: 'χ²', network: 'Residuals', graph: 'Weights' }[model.kind];
   const title = `${what} per ${model.nouns.edge}`;
   if (model.candidates.count === 0 || charted.length === 0) {
-    return panel('residuals', title, absent(`There are no ${model.nouns.edges}.`));
+    return panel('residuals', title, absent('There is nothing to tell them apart by.'));
   }
   const charts = charted.map((column) => columnChart(model, store, column));
   return panel('residuals', title, html('div', { class: 'charts' }, ...charts));

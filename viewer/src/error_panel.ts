@@ -1,6 +1,9 @@
-import { chart, type ChartSeries } from './chart';
+import { chart } from './chart';
+import type { ChartSeries } from './chart_spec';
 import { absent, html, panel } from './dom';
+import { quantity } from './format';
 import type { Layout, Model } from './model';
+import { nodeName } from './model';
 import type { Store } from './store';
 
 const LOOKS = [
@@ -24,6 +27,18 @@ function columnSeries(model: Model): ChartSeries[] {
     }));
 }
 
+function tell(model: Model, node: number): string {
+  const [layouts, { unit }] = [model.layouts.filter(({ errors }) => errors), model];
+  const lines = layouts.map((layout) => {
+    const label = layouts.length === 1 ? 'error' : layout.key;
+    return `${label}: ${quantity(layout.errors![node], unit)}`;
+  });
+  const columns = model.nodeColumns
+    .filter(({ charted }) => charted)
+    .map((column) => `${column.label}: ${quantity(column.values[node], column.unit)}`);
+  return [`${model.nouns.node} ${nodeName(model, node)}`, ...lines, ...columns].join('\n');
+}
+
 /** How far every node is from where it truly is, along the path where there is one. */
 export function errorPanel(model: Model, store: Store): HTMLElement {
   const known = model.layouts.filter((layout): layout is Layout & { errors: Float32Array } =>
@@ -45,12 +60,16 @@ export function errorPanel(model: Model, store: Store): HTMLElement {
     'errors',
     title,
     chart(
+      model.title,
+      'errors',
       {
         description: `Distance of ${model.nodeCount} ${model.nouns.nodes} from the truth`,
         x: { label: model.path ? 'distance along the path, m' : `${model.nouns.node}, in order of the file` },
         y: { label: `error, ${model.unit}` },
         xs,
         series: [...series, ...columns],
+        tell: (point) => tell(model, point),
+        names: { columns: [model.nouns.node], of: (point) => [nodeName(model, point)] },
       },
       store,
     ),

@@ -1,7 +1,8 @@
-import { Chart, type ChartSeries } from './chart';
+import { Chart } from './chart';
+import type { ChartSeries } from './chart_spec';
 import { absent, html, panel } from './dom';
 import type { Model } from './model';
-import { nodeName, VERDICTS } from './model';
+import { candidateName, VERDICTS } from './model';
 import type { Store } from './store';
 
 function row(model: Model, position: number): Float32Array {
@@ -24,7 +25,7 @@ export function medianDistances(model: Model, verdict: number): number[] | null 
 
 /** How far apart the ends of the chosen candidate are at every scale. */
 export function heatPanel(model: Model, store: Store): HTMLElement {
-  const { heat, candidates, nouns } = model;
+  const { heat, nouns } = model;
   const title = 'Heat distance against scale';
   if (heat.candidates.length === 0) {
     return panel('heat', title, absent(`There are no ${nouns.edges}.`));
@@ -48,14 +49,13 @@ export function heatPanel(model: Model, store: Store): HTMLElement {
     backdrop.push({ label: 'threshold', colour: '--ink-soft', kind: 'points', values });
   }
   const positions = new Map([...heat.candidates].map((candidate, k) => [candidate, k]));
-  const drawn = new Chart(store);
+  const drawn = new Chart(model.title, 'heat', store);
   const note = html('p', { class: 'note', 'aria-live': 'polite' });
   const show = (candidate: number) => {
     const position = positions.get(candidate);
     const series = [...backdrop];
     if (position !== undefined) {
-      const ends = [candidates.from[candidate], candidates.to[candidate]];
-      const names = ends.map((node) => nodeName(model, node)).join(' – ');
+      const names = candidateName(model, candidate);
       const values = inOrder(Array.from(row(model, position)));
       series.push({ label: names, colour: '--selected', kind: 'dotted-line', values });
     }

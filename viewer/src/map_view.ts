@@ -1,14 +1,17 @@
 import { html } from './dom';
 import { quantity, roundLength } from './format';
 import { listenToGestures } from './gestures';
+import { layerBox } from './layer_box';
+import { candidateWords, nodeWords } from './map_words';
 import type { Layout, Model } from './model';
-import { conflictsOf, nodeName, stageOf, verdictOf } from './model';
-import { pick } from './pick';
+import { conflictsOf } from './model';
+import { nearestNode, pick } from './pick';
 import type { Renderer } from './renderer';
+import { saveButtons } from './save';
 import type { DrawLayer, Scene } from './scene';
 import { buildScene, inSpace } from './scene';
 import type { Store } from './store';
-import { SvgRenderer } from './svg_renderer';
+import { mapSvg, SvgRenderer } from './svg_renderer';
 import { WebGlRenderer } from './webgl_renderer';
 import type { View } from './view';
 import { fitted, initialView, panned, projectionOf, turned, zoomed } from './view';
@@ -93,9 +96,7 @@ export class MapView {
   private prunedSwitch(): HTMLElement[] {
     const key = `${this.layout.key}:prune`;
     if (!this.store.state.hidden.has(key)) return [];
-    const box = html('input', { type: 'checkbox', 'data-layer': key });
-    box.addEventListener('change', () => this.store.toggleLayer(key, box.checked));
-    return [html('label', { class: 'layer' }, box, `pruned ${this.model.nouns.edges}`)];
+    return [layerBox(key, this.store, `pruned ${this.model.nouns.edges}`)];
   }
 
   private buttons(): HTMLElement {
@@ -108,10 +109,17 @@ export class MapView {
     return html(
       'div',
       { class: 'buttons', role: 'group', 'aria-label': 'View' },
+      saveButtons(this.model.title, `map-${this.layout.key}`, { svg: () => this.picture() }),
       button('Zoom in', '+', () => about(1.4)),
       button('Zoom out', '−', () => about(1 / 1.4)),
       button('Fit', '⤢', () => this.fit()),
     );
+  }
+
+  private picture(): SVGSVGElement {
+    const layers = [...this.visibleLayers(), ...this.highlight()];
+    const title = `${this.model.title}. ${this.layout.label}`;
+    return mapSvg(title, layers, this.view, this.width, this.height);
   }
 
   private showScene(): void {
@@ -267,19 +275,25 @@ export class MapView {
 
   private hover(x: number, y: number): void {
     const candidate = this.at(x, y);
-    if (candidate < 0) {
-      this.hideTooltip();
-      return;
-    }
-    const { candidates, nouns } = this.model;
-    const ends = [candidates.from[candidate], candidates.to[candidate]];
-    const names = ends.map((node) => nodeName(this.model, node)).join(' – ');
-    this.tooltip.textContent =
-      `${nouns.edge} ${names}: ${verdictOf(this.model, candidate)}, ` +
-      stageOf(this.model, candidate);
-    this.tooltip.hidden = false;
-    const left = Math.min(x + 12, this.width - this.tooltip.offsetWidth - 4);
-    this.tooltip.style.transform = `translate(${Math.max(left, 4)}px, ${y + 14}px)`;
+    const projection = projectionOf(this.view, this.width, this.height);
+    const node = nearestNode(projection, this.positions, x, y, REACH);
+    const words = [
+      ...(candidate < 0 ? [] : candidateWords(this.model, candidate)),
+      ...(node < 0 ? [] : nodeWords(this.model, this.layout, node)),
+    ];
+    this.tooltip.hidden = words.length === 0;
+    this.tooltip.dataset.about = [candidate < 0 ? '' : 'edge', node < 0 ? '' : 'node'].join(' ').trim();
+    this.tooltip.textContent = words.join('\n');
+    this.placeTooltip(x, y);
+  }
+
+  // Beside the pointer, and inside of the map.
+  private placeTooltip(x: number, y: number): void {
+    const { offsetWidth, offsetHeight } = this.tooltip;
+    const left = Math.min(x + 12, this.width - offsetWidth - 4);
+    const below = y + 14 + offsetHeight < this.height;
+    const top = below ? y + 14 : y - 8 - offsetHeight;
+    this.tooltip.style.transform = `translate(${Math.max(left, 4)}px, ${Math.max(top, 0)}px)`;
   }
 
   private hideTooltip(): void {

@@ -13,6 +13,8 @@ export interface Layout {
   label: string;
   /** nodes x dimension; NaN where not known */
   positions: Float32Array;
+  /** added to positions gives coordinates of the input */
+  origin: number[];
   /** the same for true positions, or null */
   truth: Float32Array | null;
   /** distance of each node from its true position, or null */
@@ -120,6 +122,7 @@ function readLayout(json: Json, size: number): Layout {
     key: String(json.key),
     label: String(json.label),
     positions: float32(json.positions),
+    origin: (json.origin as unknown[]).map(Number),
     truth: json.truth ? float32(json.truth) : null,
     errors: json.errors ? float32(json.errors) : null,
   };
@@ -237,6 +240,29 @@ export function conflictsOf(model: Model, candidate: number): number[] {
   return Array.from(
     conflicts.candidates.subarray(conflicts.offsets[candidate], conflicts.offsets[candidate + 1]),
   );
+}
+
+/** Candidates that this one contradicts: the other way from conflictsOf(). */
+export function contradictedBy(model: Model, candidate: number): number[] {
+  const conflicts = model.candidates.conflicts;
+  const found: number[] = [];
+  if (!conflicts) return found;
+  for (let k = 0, row = 0; k < conflicts.candidates.length; ++k) {
+    while (conflicts.offsets[row + 1] <= k) ++row;
+    if (conflicts.candidates[k] === candidate) found.push(row);
+  }
+  return found;
+}
+
+/** The ends of a candidate, as the input calls them. */
+export function candidateName(model: Model, candidate: number): string {
+  const { from, to } = model.candidates;
+  return `${nodeName(model, from[candidate])} – ${nodeName(model, to[candidate])}`;
+}
+
+/** Candidates in order of the input. */
+export function inOrder(model: Model): Uint32Array {
+  return Uint32Array.from({ length: model.candidates.count }, (_, k) => k);
 }
 
 /** How many candidates have each verdict, in the order of VERDICTS. */

@@ -41,3 +41,24 @@ export function pick(
   }
   return found;
 }
+
+/** The node that is nearest to a pixel, if one is within `reach`; else -1. */
+export function nearestNode(
+  projection: Projection,
+  positions: Float32Array,
+  x: number,
+  y: number,
+  reach: number,
+): number {
+  let best = reach * reach;
+  let found = -1;
+  for (let node = 0; 3 * node < positions.length; ++node) {
+    const [px, py] = projectNode(projection, positions, node);
+    const distance = (px - x) ** 2 + (py - y) ** 2;
+    if (distance <= best) {
+      best = distance;
+      found = node;
+    }
+  }
+  return found;
+}

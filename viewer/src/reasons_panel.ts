@@ -1,7 +1,7 @@
 import { absent, html, panel } from './dom';
-import { capital, count, number, quantity } from './format';
+import { aOrAn, capital, count, number, quantity } from './format';
 import type { Model } from './model';
-import { conflictsOf, nodeName, stageOf, verdictOf } from './model';
+import { candidateName, conflictsOf, contradictedBy, stageOf, verdictOf } from './model';
 import type { Store } from './store';
 
 const SHOWN_CONFLICTS = 40;
@@ -33,35 +33,41 @@ function comparison(score: number, threshold: number): string {
   return `${number(score)} against a threshold of ${number(threshold)} (${ratio} times)`;
 }
 
-function conflictList(model: Model, store: Store, candidate: number): Node {
-  const conflicts = conflictsOf(model, candidate);
+// Links from loop to loop.
+function linksTo(model: Model, store: Store, others: number[]): Node {
   if (!model.candidates.conflicts) return html('span', {}, 'not told by this method');
-  if (conflicts.length === 0) return html('span', {}, 'none');
-  const buttons = conflicts.slice(0, SHOWN_CONFLICTS).map((other) => {
-    const { from, to } = model.candidates;
-    const label = `${nodeName(model, from[other])} – ${nodeName(model, to[other])}`;
-    const button = html('button', { type: 'button', class: 'link' }, label);
+  if (others.length === 0) return html('span', {}, 'none');
+  const buttons = others.slice(0, SHOWN_CONFLICTS).map((other) => {
+    const button = html(
+      'button',
+      { type: 'button', class: 'link', 'data-candidate': other },
+      candidateName(model, other),
+    );
     button.addEventListener('click', () => store.select(other));
     return button;
   });
-  const more = conflicts.length - buttons.length;
+  const more = others.length - buttons.length;
   return html('span', { class: 'chips' }, ...buttons, more > 0 ? `and ${count(more)} more` : '');
+}
+
+// An accepted candidate leads to those that it speaks against.
+function contradicted(model: Model, store: Store, candidate: number): [string, Node][] {
+  const others = contradictedBy(model, candidate);
+  return others.length > 0 ? [['Contradicts', linksTo(model, store, others)]] : [];
 }
 
 function reasons(model: Model, store: Store, candidate: number): HTMLElement {
   const { candidates, nouns } = model;
-  const names = [candidates.from[candidate], candidates.to[candidate]].map((node) =>
-    nodeName(model, node),
-  );
   const verdict = verdictOf(model, candidate);
   const line = candidates.line[candidate];
   const rows: [string, Node | string][] = [
-    [capital(nouns.edge), `${names[0]} – ${names[1]}`],
+    [capital(nouns.edge), candidateName(model, candidate)],
     ['In the file', `edge ${candidates.edge[candidate]}${line > 0 ? `, line ${line}` : ''}`],
     ['Verdict', html('span', { class: `verdict verdict-${verdict}` }, verdict)],
     ['Score', comparison(candidates.score[candidate], candidates.threshold[candidate])],
     ['Decided', stageInWords(stageOf(model, candidate))],
-    ['Conflicts with', conflictList(model, store, candidate)],
+    ['Conflicts with', linksTo(model, store, conflictsOf(model, candidate))],
+    ...contradicted(model, store, candidate),
     ...candidates.columns.map((column): [string, Node] => [
       capital(column.label),
       html(
@@ -79,18 +85,14 @@ function reasons(model: Model, store: Store, candidate: number): HTMLElement {
   );
 }
 
-/** Why the chosen candidate was decided as it was. */
-export function reasonsPanel(model: Model, store: Store): HTMLElement {
+/** What speaks for the verdict on the chosen candidate; follows the choice. */
+export function reasonsBody(model: Model, store: Store): HTMLElement {
   const { edge } = model.nouns;
   const body = html('div', { 'aria-live': 'polite' });
   const show = (candidate: number) => {
     body.replaceChildren(
       candidate < 0
-        ? absent(
-            model.candidates.count > 0
-              ? `Click a ${edge} on the map or in the table; N and P step through them.`
-              : `There are no ${model.nouns.edges} to explain.`,
-          )
+        ? absent(`Click ${aOrAn(edge)} on the map or in the table; N and P step through them.`)
         : reasons(model, store, candidate),
     );
   };
@@ -98,5 +100,10 @@ export function reasonsPanel(model: Model, store: Store): HTMLElement {
     if (state.selected !== before.selected) show(state.selected);
   });
   show(store.state.selected);
-  return panel('reasons', `Why this ${edge}?`, body);
+  return body;
+}
+
+/** Why the chosen candidate was decided as it was. */
+export function reasonsPanel(model: Model, store: Store): HTMLElement {
+  return panel('reasons', `Why this ${model.nouns.edge}?`, reasonsBody(model, store));
 }

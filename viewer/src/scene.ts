@@ -1,6 +1,6 @@
 import { count } from './format';
 import type { Layout, Model } from './model';
-import { VERDICTS } from './model';
+import { VERDICTS, verdictCounts } from './model';
 
 /** One kind of thing on the map, drawn and toggled together. */
 export interface DrawLayer {
@@ -25,7 +25,8 @@ export interface DrawLayer {
 export interface LegendEntry {
   key: string;
   label: string;
-  count: number;
+  /** one a report */
+  counts: number[];
   colour: string;
   shape: 'line' | 'point';
 }
@@ -43,6 +44,7 @@ const COLOURS: Record<string, string> = {
   prune: '--prune',
   ambiguous: '--ambiguous',
   truth: '--truth',
+  band: '--truth-band',
   nodes: '--node',
   landmarks: '--landmark',
 };
@@ -118,9 +120,18 @@ function opacityOf(lines: number): number {
   return lines > 300 ? 0.45 : 0.85;
 }
 
+/** Many dots are small, so that what joins them is seen. */
+function dotSize(dots: number): number {
+  if (dots > 1500) return 2;
+  return dots > 400 ? 3 : 5;
+}
+
 const AFTERWARDS = 0.4;
 /** Lines of a path, and nodes, for each candidate of a verdict that may be drawn. */
 const PATH = 2;
+
+/** Pieces of a broad path: as many as are drawn broad. */
+const BAND = 4000;
 
 const NO_LINES = new Uint32Array(0);
 
@@ -187,10 +198,11 @@ class SceneBuilder {
     if (!this.layout.truth) return;
     const truth = inSpace(this.layout.truth, this.model.dimension);
     if (this.model.kind === 'pose_graph') {
-      const stops = thinned(this.model.nodeCount, PATH * this.limit);
+      const stops = thinned(this.model.nodeCount, Math.min(BAND, PATH * this.limit));
       const steps = Math.max(stops.length - 1, 0);
       const { lines } = linesOf(truth, steps, (k) => [stops[k], stops[k + 1]]);
-      this.add('truth', { positions: truth, lines, width: 4, opacity: 0.45 });
+      // Opaque: short pieces of a path lie over each other's ends.
+      this.add('truth', { positions: truth, lines, width: 5, opacity: 1, colour: COLOURS.band });
       return;
     }
     const both = new Float32Array(2 * truth.length);
@@ -209,7 +221,7 @@ class SceneBuilder {
     );
     const chosen = thinned(moving.length, PATH * this.limit);
     this.noteThinning(chosen.length, moving.length, this.model.nouns.nodes);
-    this.add('nodes', { points: chosen.map((k) => moving[k]), width: 5, opacity: 1 });
+    this.add('nodes', { points: chosen.map((k) => moving[k]), width: dotSize(moving.length), opacity: 1 });
   }
 
   addLandmarks(): void {
@@ -289,29 +301,37 @@ export function buildScene(model: Model, layout: Layout, limit: number): Scene {
   return { layers: builder.layers, notes: builder.notes };
 }
 
-/** What there is on the map, in the order in which people ask for it. */
-export function legendOf(model: Model): LegendEntry[] {
-  const counts = VERDICTS.map(
-    (_, verdict) => model.candidates.verdict.reduce((sum, v) => sum + Number(v === verdict), 0),
-  );
-  const entries: LegendEntry[] = VERDICTS.map((key, verdict) => ({
-    key,
-    label: `${label(key)} ${model.nouns.edges}`,
-    count: counts[verdict],
-    colour: COLOURS[key],
-    shape: 'line',
-  }));
-  const add = (key: string, text: string, size: number, shape: 'line' | 'point') => {
-    if (size > 0) entries.push({ key, label: text, count: size, colour: COLOURS[key], shape });
+/**
+ * What there is on the maps of reports on one graph, in the order in which people ask for it;
+ * what there is nothing of is left out.
+ */
+export function legendOf(models: Model[]): LegendEntry[] {
+  const model = models[0];
+  const entries: LegendEntry[] = [];
+  VERDICTS.forEach((key, verdict) => {
+    const counts = models.map((one) => verdictCounts(one)[verdict]);
+    if (counts.every((size) => size === 0)) return;
+    const text = `${label(key)} ${model.nouns.edges}`;
+    entries.push({ key, label: text, counts, colour: COLOURS[key], shape: 'line' });
+  });
+  const add = (
+    key: string,
+    text: string,
+    size: number,
+    shape: 'line' | 'point',
+    colour = COLOURS[key],
+  ) => {
+    if (size > 0) entries.push({ key, label: text, counts: [size], colour, shape });
   };
   for (const { key, label: text, pairs, colour } of trustedOf(model)) {
     const size = pairs.length / 2;
-    if (size > 0) entries.push({ key, label: text, count: size, colour, shape: 'line' });
+    if (size > 0) entries.push({ key, label: text, counts: [size], colour, shape: 'line' });
   }
   const truth = model.layouts.find((layout) => layout.errors)?.errors;
   if (truth) {
     const known = truth.reduce((sum, error) => sum + Number(!Number.isNaN(error)), 0);
-    add('truth', model.kind === 'pose_graph' ? 'ground truth' : 'to true position', known, 'line');
+    if (model.kind === 'pose_graph') add('truth', 'ground truth', known, 'line', COLOURS.band);
+    else add('truth', 'to true position', known, 'line');
   }
   if (model.kind !== 'pose_graph') {
     add('nodes', model.nouns.nodes, model.nodeCount - model.landmarks.length, 'point');

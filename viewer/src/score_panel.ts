@@ -1,6 +1,7 @@
 import { chart } from './chart';
 import { absent, html, panel } from './dom';
 import { count, number } from './format';
+import type { Histogram } from './histogram';
 import { histogram, stacked } from './histogram';
 import type { Model } from './model';
 import { VERDICTS } from './model';
@@ -10,6 +11,11 @@ import type { Store } from './store';
 function commonThreshold(model: Model): number | null {
   const { threshold } = model.candidates;
   return threshold.every((value) => value === threshold[0]) ? threshold[0] : null;
+}
+
+function tell(model: Model, { edges, counts }: Histogram, bin: number): string {
+  const heights = VERDICTS.map((name, verdict) => `${name}: ${count(counts[verdict][bin])}`);
+  return [`${number(edges[bin])} to ${number(edges[bin + 1])}, ${model.nouns.edges}`, ...heights].join('\n');
 }
 
 /** How the scores lie around the threshold. */
@@ -30,7 +36,10 @@ export function scorePanel(model: Model, store: Store): HTMLElement {
     colour: `--${name}`,
     kind: 'bars' as const,
     values: [...stacks[verdict], 0],
-  })).reverse();
+    saved: [...bins.counts[verdict], 0],
+  }))
+    .filter((_, verdict) => candidates.verdict.includes(verdict))
+    .reverse();
   const infinite = candidates.score.reduce((sum, s) => sum + Number(s === Infinity), 0);
   const note =
     infinite > 0 ? `${count(infinite)} infinite scores are counted in the last bar.` : '';
@@ -38,12 +47,15 @@ export function scorePanel(model: Model, store: Store): HTMLElement {
     'scores',
     title,
     chart(
+      model.title,
+      'scores',
       {
         description: `Histogram of the scores of ${count(candidates.count)} ${nouns.edges}, threshold ${number(threshold)}`,
         x: { label: common === null ? 'score / threshold' : 'score', log: bins.log },
         y: { label: nouns.edges },
         xs: bins.edges,
         series,
+        tell: (bin) => tell(model, bins, bin),
         marks: Number.isFinite(threshold)
           ? [{ axis: 'x', value: threshold, label: `threshold ${number(threshold)}` }]
           : [],

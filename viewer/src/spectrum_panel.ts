@@ -22,6 +22,8 @@ export function spectrumPanel(model: Model, store: Store): HTMLElement {
     'spectrum',
     title,
     chart(
+      model.title,
+      'spectrum',
       {
         description: `${positive.length} eigenvalues from ${number(positive[0])}`,
         x: { label: 'number k of the eigenvalue' },
@@ -53,6 +55,8 @@ export function decayPanel(model: Model, store: Store): HTMLElement {
     'decay',
     title,
     chart(
+      model.title,
+      'decay',
       {
         description: `exp(-lambda t) of ${values.length} eigenvalues at ${scales.length} times`,
         x: { label: 'number k of the eigenvalue' },

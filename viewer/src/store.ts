@@ -29,12 +29,12 @@ export class Store {
     if (candidate !== this.state.selected) this.update({ selected: candidate });
   }
 
-  /** The next or the previous of `count` candidates, from the last to the first and back. */
-  step(by: number, count: number): void {
-    if (count === 0) return;
-    const now = this.state.selected;
+  /** The next or the previous candidate of `order`, from the last to the first and back. */
+  step(by: number, order: Uint32Array): void {
+    if (order.length === 0) return;
+    const now = order.indexOf(this.state.selected);
     const start = now < 0 && by < 0 ? 0 : now;
-    this.select((start + by + count) % count);
+    this.select(order[(start + by + order.length) % order.length]);
   }
 
   toggleLayer(key: string, visible: boolean): void {

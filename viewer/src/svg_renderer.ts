@@ -1,6 +1,7 @@
 import { svg } from './dom';
 import type { Renderer } from './renderer';
 import type { DrawLayer } from './scene';
+import { colour } from './theme';
 import type { Projection, View } from './view';
 import { projectionOf, projectNode } from './view';
 
@@ -24,20 +25,40 @@ function pointData(layer: DrawLayer, projection: Projection): string {
   return parts.join('');
 }
 
+function path(layer: DrawLayer, projection: Projection, stroke: string): SVGPathElement {
+  return svg('path', {
+    d: lineData(layer, projection) + pointData(layer, projection),
+    class: `layer-${layer.key}`,
+    fill: 'none',
+    stroke,
+    'stroke-width': layer.width,
+    'stroke-opacity': layer.opacity,
+    'stroke-dasharray': layer.dash?.join(' '),
+    'stroke-linecap': layer.points.length > 0 ? 'round' : 'butt',
+  });
+}
+
 function draw(group: SVGGElement, layers: readonly DrawLayer[], projection: Projection): void {
-  group.replaceChildren(
-    ...layers.map((layer) =>
-      svg('path', {
-        d: lineData(layer, projection) + pointData(layer, projection),
-        class: `layer-${layer.key}`,
-        fill: 'none',
-        stroke: `var(${layer.colour})`,
-        'stroke-width': layer.width,
-        'stroke-opacity': layer.opacity,
-        'stroke-dasharray': layer.dash?.join(' '),
-        'stroke-linecap': layer.points.length > 0 ? 'round' : 'butt',
-      }),
-    ),
+  const paths = layers.map((layer) => path(layer, projection, `var(${layer.colour})`));
+  group.replaceChildren(...paths);
+}
+
+/** What a view sees as a picture of its own, in the colours of the page. */
+export function mapSvg(
+  title: string,
+  layers: readonly DrawLayer[],
+  view: View,
+  width: number,
+  height: number,
+): SVGSVGElement {
+  const projection = projectionOf(view, width, height);
+  const viewBox = `0 0 ${width} ${height}`;
+  return svg(
+    'svg',
+    { xmlns: 'http://www.w3.org/2000/svg', width, height, viewBox },
+    svg('title', {}, title),
+    svg('rect', { width, height, fill: colour('--card') }),
+    ...layers.map((layer) => path(layer, projection, colour(layer.colour))),
   );
 }
 

@@ -1,10 +1,9 @@
 import { absent, html, panel } from './dom';
 import { capital, count } from './format';
-import type { Model } from './model';
-import { VERDICTS, verdictCounts } from './model';
+import { saveButtons } from './save';
 import type { Store } from './store';
-import type { TableColumn, TableQuery } from './table_rows';
-import { tableColumns, tableRows } from './table_rows';
+import type { TableColumn, TableQuery, TableSource } from './table_rows';
+import { tableRows } from './table_rows';
 
 const ROW_HEIGHT = 28;
 const MARGIN_ROWS = 6;
@@ -23,26 +22,34 @@ class CandidateTable {
   private printing = false;
 
   constructor(
-    private readonly model: Model,
+    private readonly source: TableSource,
     private readonly store: Store,
   ) {
-    this.columns = tableColumns(model);
-    this.query = { text: '', verdicts: new Set([0, 1, 2]), sort: 'edge', descending: false };
+    const { columns, groups, sort, descending } = source;
+    this.columns = columns;
+    this.query = { text: '', groups: new Set(groups.names.keys()), sort, descending };
     this.grid = html(
       'div',
       {
         class: 'grid',
         role: 'grid',
         tabindex: 0,
-        'aria-label': `${capital(model.nouns.edges)}; arrow keys choose one`,
+        'aria-label': `${capital(source.edges)}; arrow keys choose one`,
         'aria-colcount': this.columns.length,
       },
       this.head(),
       this.body,
     );
-    this.element = html('div', {}, this.filters(), this.status, this.grid);
+    const buttons = saveButtons(source.title, 'table', { csv: () => this.saved() });
+    this.element = html('div', { class: 'saved' }, buttons, this.filters(), this.status, this.grid);
     this.listen();
     this.refresh();
+  }
+
+  /** The rows that the filters leave, in their order. */
+  private saved(): string[][] {
+    const rows = Array.from(this.rows, (k) => this.columns.map((column) => column.saved(k)));
+    return [this.columns.map(({ label }) => label), ...rows];
   }
 
   private head(): HTMLElement {
@@ -61,20 +68,22 @@ class CandidateTable {
     const search = html('input', {
       type: 'search',
       placeholder: `id, verdict or stage`,
-      'aria-label': `Filter ${this.model.nouns.edges} by id, verdict or stage`,
+      'aria-label': `Filter ${this.source.edges} by id, verdict or stage`,
       'data-filter': 'text',
     });
     search.addEventListener('input', () => this.ask({ text: search.value }));
-    const counts = verdictCounts(this.model);
-    const boxes = VERDICTS.map((name, verdict) => {
+    const { groups, count: size } = this.source;
+    const counts = groups.names.map(() => 0);
+    for (let k = 0; k < size; ++k) ++counts[groups.of[k]];
+    const boxes = groups.names.map((name, group) => {
       const box = html('input', { type: 'checkbox', checked: true, 'data-filter': name });
       box.addEventListener('change', () => {
-        const verdicts = new Set(this.query.verdicts);
-        if (box.checked) verdicts.add(verdict);
-        else verdicts.delete(verdict);
-        this.ask({ verdicts });
+        const shown = new Set(this.query.groups);
+        if (box.checked) shown.add(group);
+        else shown.delete(group);
+        this.ask({ groups: shown });
       });
-      return html('label', { class: 'layer' }, box, `${name} (${count(counts[verdict])})`);
+      return html('label', { class: 'layer' }, box, `${name} (${count(counts[group])})`);
     });
     return html('div', { class: 'filters', role: 'search' }, search, ...boxes);
   }
@@ -128,15 +137,14 @@ class CandidateTable {
   }
 
   private refresh(): void {
-    this.rows = tableRows(this.model, this.columns, this.query);
+    this.rows = tableRows(this.source, this.query);
     for (const [key, cell] of this.heads) {
       const direction = this.query.descending ? 'descending' : 'ascending';
       cell.setAttribute('aria-sort', key === this.query.sort ? direction : 'none');
     }
     this.grid.setAttribute('aria-rowcount', String(this.rows.length + 1));
     this.status.textContent =
-      `${count(this.rows.length)} of ${count(this.model.candidates.count)} ` +
-      `${this.model.nouns.edges}`;
+      `${count(this.rows.length)} of ${count(this.source.count)} ${this.source.edges}`;
     this.reveal(this.store.state.selected);
     this.draw();
   }
@@ -179,7 +187,8 @@ class CandidateTable {
     const candidate = this.rows[position];
     const chosen = candidate === this.store.state.selected;
     const cells = this.columns.map((column) => {
-      const extra = column.key === 'verdict' ? ` verdict verdict-${column.text(candidate)}` : '';
+      const isVerdict = column.key.startsWith('verdict');
+      const extra = isVerdict ? ` verdict verdict-${column.text(candidate)}` : '';
       const kind = column.numeric ? 'number' : 'text';
       return html(
         'div',
@@ -204,16 +213,16 @@ class CandidateTable {
   }
 }
 
-/** All candidates, to sort, filter and choose. */
-export function tablePanel(model: Model, store: Store): HTMLElement {
-  const { edges } = model.nouns;
-  if (model.candidates.count === 0) {
+/** All candidates, to sort, filter, choose and save. */
+export function tablePanel(source: TableSource, store: Store): HTMLElement {
+  const { edges } = source;
+  if (source.count === 0) {
     return panel('table', capital(edges), absent(`The input has no ${edges} to decide on.`));
   }
   return panel(
     'table',
     capital(edges),
-    new CandidateTable(model, store).element,
+    new CandidateTable(source, store).element,
     html('p', { class: 'note print-only' }, `Printed: the first ${PRINTED_ROWS} rows.`),
   );
 }

@@ -1,6 +1,7 @@
 import type { Model } from './model';
-import { conflictsOf, nodeName, stageOf, verdictOf } from './model';
+import { conflictsOf, nodeName, stageOf, VERDICTS, verdictOf } from './model';
 import { number } from './format';
+import { exact } from './save';
 
 /** A column of the table: how it reads and how it sorts. */
 export interface TableColumn {
@@ -9,20 +10,38 @@ export interface TableColumn {
   help: string;
   numeric: boolean;
   text(candidate: number): string;
+  /** the same with all its digits, to be saved */
+  saved(candidate: number): string;
   /** negative where a comes before b */
   compare(a: number, b: number): number;
+}
+
+/** Candidates as a table has them. */
+export interface TableSource {
+  /** what names the files that it is saved as */
+  title: string;
+  edges: string;
+  count: number;
+  columns: TableColumn[];
+  /** what rows are filtered by: their verdict */
+  groups: { names: readonly string[]; of: ArrayLike<number> };
+  /** texts that a search finds a candidate by */
+  words(candidate: number): string[];
+  /** the order at first */
+  sort: string;
+  descending: boolean;
 }
 
 /** What the table shows, and in which order. */
 export interface TableQuery {
   text: string;
-  /** verdicts that are shown, by number */
-  verdicts: ReadonlySet<number>;
+  /** groups that are shown, by number */
+  groups: ReadonlySet<number>;
   sort: string;
   descending: boolean;
 }
 
-function numeric(
+export function numeric(
   key: string,
   label: string,
   help: string,
@@ -38,17 +57,17 @@ function numeric(
     const [x, y] = [order(a), order(b)];
     return x < y ? -1 : Number(x > y);
   };
-  return { key, label, help, numeric: true, text, compare };
+  return { key, label, help, numeric: true, text, saved: (k) => exact(value(k)), compare };
 }
 
-function textual(
+export function textual(
   key: string,
   label: string,
   help: string,
   text: (candidate: number) => string,
 ): TableColumn {
   const compare = (a: number, b: number) => text(a).localeCompare(text(b), 'en', { numeric: true });
-  return { key, label, help, numeric: false, text, compare };
+  return { key, label, help, numeric: false, text, saved: text, compare };
 }
 
 // Vertex numbers have up to 64 bits, more than a number of the language holds.
@@ -64,9 +83,10 @@ function ends(key: string, label: string, model: Model, nodes: Int32Array): Tabl
   };
 }
 
-export function tableColumns(model: Model): TableColumn[] {
-  const { candidates, nouns } = model;
-  const columns = [
+/** Where a candidate is in the input, and what it joins. */
+export function placeColumns(model: Model): TableColumn[] {
+  const { candidates } = model;
+  return [
     numeric('edge', 'edge', `Position among the edges of the file`, (k) => candidates.edge[k], (k) =>
       String(candidates.edge[k]),
     ),
@@ -75,6 +95,13 @@ export function tableColumns(model: Model): TableColumn[] {
     numeric('line', 'line', 'Line of the file', (k) => candidates.line[k], (k) =>
       candidates.line[k] > 0 ? String(candidates.line[k]) : '–',
     ),
+  ];
+}
+
+function tableColumns(model: Model): TableColumn[] {
+  const { candidates, nouns } = model;
+  const columns = [
+    ...placeColumns(model),
     textual('verdict', 'verdict', `What was decided about the ${nouns.edge}`, (k) =>
       verdictOf(model, k),
     ),
@@ -96,15 +123,30 @@ export function tableColumns(model: Model): TableColumn[] {
   return columns;
 }
 
-function matches(model: Model, candidate: number, words: string[]): boolean {
+/** The table of all candidates of a report. */
+export function tableSource(model: Model): TableSource {
   const { candidates } = model;
-  const fields = [
-    nodeName(model, candidates.from[candidate]),
-    nodeName(model, candidates.to[candidate]),
-    String(candidates.edge[candidate]),
-    verdictOf(model, candidate),
-    stageOf(model, candidate).toLowerCase(),
-  ];
+  return {
+    title: model.title,
+    edges: model.nouns.edges,
+    count: candidates.count,
+    columns: tableColumns(model),
+    groups: { names: VERDICTS, of: candidates.verdict },
+    words: (k) => [...placeWords(model, k), verdictOf(model, k), stageOf(model, k)],
+    sort: 'edge',
+    descending: false,
+  };
+}
+
+/** Ends and number of a candidate, for searches. */
+export function placeWords(model: Model, candidate: number): string[] {
+  const { from, to, edge } = model.candidates;
+  const ends = [from[candidate], to[candidate]].map((node) => nodeName(model, node));
+  return [...ends, String(edge[candidate])];
+}
+
+function matches(source: TableSource, candidate: number, words: string[]): boolean {
+  const fields = source.words(candidate).map((field) => field.toLowerCase());
   return words.every((word) =>
     // A number is a whole id, a word part of a name.
     fields.some((field) => (/^\d+$/.test(word) ? field === word : field.includes(word))),
@@ -112,14 +154,14 @@ function matches(model: Model, candidate: number, words: string[]): boolean {
 }
 
 /** The candidates a query asks for, in its order; equal ones in order of the file. */
-export function tableRows(model: Model, columns: TableColumn[], query: TableQuery): Uint32Array {
+export function tableRows(source: TableSource, query: TableQuery): Uint32Array {
   const words = query.text.toLowerCase().split(/\s+/).filter((word) => word !== '');
   const rows: number[] = [];
-  for (let k = 0; k < model.candidates.count; ++k) {
-    if (!query.verdicts.has(model.candidates.verdict[k])) continue;
-    if (words.length === 0 || matches(model, k, words)) rows.push(k);
+  for (let k = 0; k < source.count; ++k) {
+    if (!query.groups.has(source.groups.of[k])) continue;
+    if (words.length === 0 || matches(source, k, words)) rows.push(k);
   }
-  const column = columns.find(({ key }) => key === query.sort);
+  const column = source.columns.find(({ key }) => key === query.sort);
   if (column && !(column.key === 'edge' && !query.descending)) {
     const sign = query.descending ? -1 : 1;
     rows.sort((a, b) => sign * column.compare(a, b) || a - b);

@@ -57,6 +57,24 @@ void add_candidates(Report& report, const WeightedGraph& graph, const EdgeVerdic
   report.candidates.columns.push_back(std::move(weight));
 }
 
+bool heat_decides(EdgeScore method) {
+  return method == EdgeScore::heat || method == EdgeScore::heat_multiscale ||
+         method == EdgeScore::affinity;
+}
+
+void add_spectral(Report& report, const WeightedGraph& graph, const JudgeEdgesOptions& judged,
+                  const RunContext& context) {
+  if (!heat_decides(judged.method)) {
+    leave_out_spectral(report);
+    return;
+  }
+  const SpectralReportOptions options{.scales = scales_around(judged.scale),
+                                      .threads = context.threads,
+                                      .progress = context.progress};
+  report.spectrum = report_spectrum(graph, options);
+  report.heat = report_heat(graph, edge_pairs(graph), report.candidates.verdict, options);
+}
+
 std::string words_of_threshold(const JudgeEdgesResult& result) {
   return fmt::format(
       "{} of {} scores are within a factor of two of their threshold. The threshold {:.4g} was "
@@ -78,11 +96,7 @@ Report graph_report(const WeightedGraph& graph, const WeightedGraph& left,
   report.node_ids = run.ids;
   add_layouts(report, graph, left, run, context.progress);
   add_candidates(report, graph, result.verdicts);
-  const SpectralReportOptions options{.scales = scales_around(run.options.scale),
-                                      .threads = context.threads,
-                                      .progress = context.progress};
-  report.spectrum = report_spectrum(graph, options);
-  report.heat = report_heat(graph, edge_pairs(graph), report.candidates.verdict, options);
+  add_spectral(report, graph, run.options, context);
   report.truth_note = "A plain graph has no true positions to compare with.";
   const auto parts = [](const WeightedGraph& part) { return connected_components(part).count; };
   report.summary = {

@@ -85,6 +85,12 @@ void add_uncertainty(Report& report, const LocalizeResult& result) {
 }
 
 void add_spectral(Report& report, const RangeNetwork& network, const LocalizeRun& run) {
+  // Pruning by heat is a stage of the robust method, which some networks need.
+  const auto& stages = report.candidates.stages;
+  if (std::find(stages.begin(), stages.end(), "heat") == stages.end()) {
+    leave_out_spectral(report);
+    return;
+  }
   std::vector<spectral::WeightedEdge> edges;
   for (const auto& range : network.ranges) edges.push_back({range.from, range.to, 1.0});
   const spectral::WeightedGraph graph(network.node_count(), std::move(edges));
@@ -99,7 +105,10 @@ std::string words_of_nodes(const LocalizeResult& result) {
   std::string text;
   for (const auto& [status, name] : enum_names(NodeStatus{})) {
     const auto nodes = result.count(status);
-    if (nodes > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", nodes, name);
+    if (nodes == 0) continue;
+    text += text.empty() ? "" : ", ";
+    text +=
+        status == NodeStatus::anchor ? counted(nodes, "anchor") : fmt::format("{} {}", nodes, name);
   }
   return "Nodes: " + (text.empty() ? "none" : text) + ".";
 }

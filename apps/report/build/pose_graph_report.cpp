@@ -109,11 +109,13 @@ class Explainer {
     ReportColumn alone{"chi2_odometry",
                        "χ² odometry",
                        "",
-                       "Chi-squared of the loop against odometry alone.",
+                       "Chi-squared of the loop against odometry alone; none where no odometry "
+                       "joins its ends.",
                        {},
                        true};
     for (const auto& check : odometry_chi2(graph_, roles_)) {
-      alone.values.push_back(static_cast<float>(check.chi2));
+      alone.values.push_back(check.connected ? static_cast<float>(check.chi2)
+                                             : std::numeric_limits<float>::quiet_NaN());
     }
     ReportColumn after{"chi2_map",
                        "χ² map",
@@ -176,7 +178,11 @@ class Explainer {
 
   void add_spectral() {
     const auto* own = std::get_if<HeatPruneOptions>(&run_.options.prune);
-    const HeatPruneOptions heat = own != nullptr ? *own : HeatPruneOptions{};
+    if (own == nullptr) {
+      leave_out_spectral(report_);
+      return;
+    }
+    const HeatPruneOptions& heat = *own;
     const auto induced = induce(graph_, roles_, heat.induction, context_);
     auto scales = heat.scales;
     if (scales.empty()) {

@@ -107,4 +107,9 @@ ReportHeat report_heat(const WeightedGraph& graph, const std::vector<VertexPair>
   return heat;
 }
 
+void leave_out_spectral(Report& report) {
+  report.heat.note = "Heat decided nothing in this run.";
+  report.spectrum.note = report.heat.note;
+}
+
 }  // namespace isotherm::apps

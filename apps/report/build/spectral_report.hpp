@@ -42,4 +42,7 @@ ReportHeat report_heat(const spectral::WeightedGraph& graph,
 /// `count` of the positions [0, size), evenly spread; all of them if there are no more.
 std::vector<std::size_t> spread_evenly(std::size_t size, std::size_t count);
 
+/// Says that heat had no part in the decisions of a run, whose report has neither.
+void leave_out_spectral(Report& report);
+
 }  // namespace isotherm::apps
