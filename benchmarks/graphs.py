@@ -1,9 +1,11 @@
 """Adds false edges to plain geometric graphs and measures how `isotherm edges` finds them.
 
 usage: graphs.py ISOTHERM DATA [--quick]
+       graphs.py --write-minnesota SHARE DATA FOLDER
 
 Prints the tables of docs/results/graphs.md. DATA has geomgraph/; --quick leaves out
-the graphs with 20,000 and more vertices. Needs numpy and scipy.
+the graphs with 20,000 and more vertices. The second way only writes one of the graphs,
+with its positions. Needs numpy and scipy.
 
 A false edge joins two vertices drawn uniformly, that no true edge joins. It is labelled
 `ignore` where its ends are closer than twice the radius: as far as two true edges
@@ -92,6 +94,20 @@ def add_false_edges(graph, share, rng):
     return np.r_[edges, false][order], labels[order]
 
 
+def write_positions(points, folder):
+    path = os.path.join(folder, "positions.csv")
+    np.savetxt(path, np.c_[np.arange(len(points)), points], delimiter=",",
+               fmt=["%d"] + ["%.17g"] * points.shape[1])
+    return path
+
+
+def write_minnesota(share, data, folder):
+    graph = minnesota(data)
+    edges, _ = add_false_edges(graph, share, np.random.default_rng(1))
+    np.savetxt(os.path.join(folder, "minnesota.csv"), edges, fmt="%d", delimiter=",")
+    write_positions(graph[1], folder)
+
+
 def share_alone(edges, labels):
     """Share of the false edges whose ends have two more edges each, dead ends left out.
 
@@ -156,17 +172,11 @@ class Bench:
         score = np.array([float(row["score"]) for row in rows])
         return verdict, score, seconds, usage.ru_maxrss / 1024
 
-    def write_positions(self, points):
-        path = os.path.join(self.folder, "positions.csv")
-        np.savetxt(path, np.c_[np.arange(len(points)), points], delimiter=",",
-                   fmt=["%d"] + ["%.17g"] * points.shape[1])
-        return path
-
     def measure(self, graph, share, rng, method):
         """(true and false edges, precision, recall, share of true edges pruned, seconds,
         areas) of one graph. Only the method "rank" is told the positions."""
         edges, labels = add_false_edges(graph, share, rng)
-        flags = ["--positions", self.write_positions(graph[1])] if method == "rank" else []
+        flags = ["--positions", write_positions(graph[1], self.folder)] if method == "rank" else []
         verdict, score, seconds, _ = self.judge(edges, method, flags)
         true, false = labels == 0, labels == 1
         areas = [area_under_curve(score, labels)]
@@ -184,7 +194,7 @@ class Bench:
             for seed in range(1, repeats + 1):
                 graph, rng = minnesota(data), np.random.default_rng(seed)
                 edges, labels = add_false_edges(graph, share, rng)
-                positions = self.write_positions(graph[1])
+                positions = write_positions(graph[1], self.folder)
                 verdict = self.judge(edges, "rank", ["--positions", positions])[0]
                 found.append(precision_and_recall(verdict, labels, near_ones=True))
             precision, recall = np.mean(found, axis=0)
@@ -217,6 +227,9 @@ class Bench:
 
 
 def main():
+    if sys.argv[1] == "--write-minnesota":
+        write_minnesota(float(sys.argv[2]), *sys.argv[3:5])
+        return
     command, data = sys.argv[1:3]
     quick = "--quick" in sys.argv
     with tempfile.TemporaryDirectory() as folder:

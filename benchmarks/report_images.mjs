@@ -1,0 +1,34 @@
+// Pictures of reports: their tops, for the documentation, and whole pages, to look at.
+// usage: node benchmarks/report_images.mjs REPORTS PICTURES NAME ...
+// REPORTS has NAME.html, and gets NAME-WIDTH.png of the whole page; PICTURES gets
+// report-NAME-WIDTH.png of its top. The first pruned candidate is chosen.
+import { join } from 'node:path';
+import { openReport, startBrowser } from '../tests/viewer/browser.mjs';
+
+const [reports, pictures, ...names] = process.argv.slice(2);
+const LOOKS = [
+  { width: 1280, height: 800 },
+  { width: 400, height: 844 },
+];
+
+async function choosePruned(page) {
+  await page.type('[data-filter="text"]', 'prune');
+  const row = await page.$('.rows [data-candidate]');
+  await row?.evaluate((element) => element.click());
+  await page.evaluate(() => {
+    document.activeElement?.blur();
+    window.scrollTo(0, 0);
+  });
+}
+
+const browser = await startBrowser();
+for (const name of names) {
+  for (const look of LOOKS) {
+    const { page } = await openReport(browser, join(reports, `${name}.html`), look);
+    await choosePruned(page);
+    await page.screenshot({ path: join(pictures, `report-${name}-${look.width}.png`) });
+    await page.screenshot({ path: join(reports, `${name}-${look.width}.png`), fullPage: true });
+    await page.close();
+  }
+}
+await browser.close();
