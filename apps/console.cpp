@@ -69,8 +69,9 @@ class ProgressLine {
     const double share = static_cast<double>(progress.done) / static_cast<double>(progress.total);
     const double so_far = seconds_since(stage_start_);
     constexpr double kTelling = 0.02;  // of the stage, before which nothing is foretold
+    // How many passes are still to come is not known.
     const std::string left =
-        share > kTelling && so_far > 1.0
+        pass_ == 1 && share > kTelling && so_far > 1.0
             ? fmt::format(", about {} left", duration_in_words(so_far * (1.0 - share) / share))
             : "";
     return fmt::format("{:3.0f} %, {}{}", 100.0 * share, elapsed, left);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "console.hpp"
+#include "isotherm/base/words.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "option_verb.hpp"
 #include "verbs/input/pose_graph_input.hpp"
@@ -30,8 +31,9 @@ struct DensifyVerb : OptionVerb<slam::DensifyOptions> {
     const auto dense = slam::densify(graph, roles, options);
     slam::write_g2o(output, dense);
     const auto added = dense.constraint_count() - graph.constraint_count();
-    say(flags, fmt::format("densified: {} loops of the input, {} copies added",
-                           roles.candidates.size(), added));
+    say(flags,
+        fmt::format("densified: {} of the input, {} added",
+                    counted(roles.candidates.size(), "loop"), counted(added, "copy", "copies")));
     write_json(flags.json, {{"schema", "isotherm.densify/1"},
                             {"loops", roles.candidates.size()},
                             {"copies_added", added},

@@ -44,11 +44,17 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
 
   int run() {
     if (resolve_or_dump()) return kOk;
+    if (!positions.empty() && options.method != EdgeScore::rank && !explain.wanted()) {
+      throw InvalidArgument("positions",
+                            "have no use: they are for --method rank, to judge by, "
+                            "and for --report and --svg, to draw at");
+    }
     const RunContext context{flags.threads, progress_line(flags), flags.seed};
     const auto file = read_input(context);
     for (const auto& diagnostic : file.report.diagnostics) warn(flags, to_string(diagnostic));
     if (!trusted.empty()) options.trusted = trusted_edges(file);
     auto result = judge_edges(file.graph, options, file.points, context);
+    for (const auto& warning : result.warnings) warn(flags, warning);
     const auto left = apply_verdicts(file.graph, result.verdicts, !drop_ambiguous);
     if (explain.wanted()) {
       const EdgesRun run{file_title(input), options, file.ids, file.points};
@@ -132,6 +138,7 @@ struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
             // JSON has no infinity; null stands for "nothing to split".
             {"threshold", std::isfinite(threshold) ? Json(threshold) : Json()},
             {"separation", result.threshold.separation},
+            {"warnings", result.warnings},
             {"seconds", result.seconds},
             {"options", options_to_json(options)}};
   }

@@ -11,6 +11,7 @@
 #include "isotherm/base/text_writer.hpp"
 #include "isotherm/base/words.hpp"
 #include "isotherm/spectral/eigen/embedding.hpp"
+#include "isotherm/spectral/eigen/vector_bounds.hpp"
 #include "isotherm/spectral/graph/graph_file.hpp"
 #include "option_verb.hpp"
 #include "verbs/verbs.hpp"
@@ -117,22 +118,56 @@ struct EmbedVerb : OptionVerb<EmbedOptions> {
                               components));
     }
     EigenOptions eigen_options;
-    eigen_options.count = static_cast<Index>(
+    const auto wanted = static_cast<Index>(
         std::clamp<std::int64_t>(options.dimensions, 1, std::max<Index>(1, available)));
+    // The next value tells whether the last vector stands alone.
+    const bool complete = available <= wanted;
+    eigen_options.count = complete ? wanted : wanted + 1;
     eigen_options.null_vectors = null_vectors;
     eigen_options.progress = progress_line(flags);
-    const auto eigen = smallest_eigenpairs(laplacian, eigen_options);
+    auto eigen = smallest_eigenpairs(laplacian, eigen_options);
+    auto vectors = vector_bounds(eigen, complete);
+    if (eigen.null_count <= wanted) warn_of_choice(vectors, wanted);
+    shorten(eigen, vectors, wanted);
     const auto rows = coordinates(eigen, options);
     report(eigen, components);
     write_text(output, format_suffix(output) == ".npy" ? npy_text(rows) : csv_text(rows, file.ids));
-    write_json(flags.json, to_json(eigen, components));
+    write_json(flags.json, to_json(eigen, vectors, components));
     return eigen.status == EigenStatus::converged ? kOk : kNotConverged;
   }
 
+  // Vectors of one value are as good as any turn of them, and here some of them are left out.
+  void warn_of_choice(const VectorBounds& vectors, Index wanted) const {
+    if (static_cast<Index>(vectors.group.size()) <= wanted) return;
+    const Index first = vectors.group[static_cast<std::size_t>(wanted)];
+    if (first >= wanted) return;
+    warn(flags, fmt::format("the last {} cannot be told from the next: any other choice of vectors "
+                            "with these eigenvalues is as good",
+                            counted(wanted - first, "coordinate")));
+  }
+
+  static void shorten(EigenDecomposition& eigen, VectorBounds& vectors, Index count) {
+    count = std::min(count, eigen.count());
+    eigen.values.conservativeResize(count);
+    eigen.vectors.conservativeResize(Eigen::NoChange, count);
+    eigen.residuals.conservativeResize(count);
+    eigen.bounds.conservativeResize(count);
+    vectors.sines.conservativeResize(count);
+    vectors.group.resize(static_cast<std::size_t>(count));
+  }
+
   // Null eigenvalues come first, one a component, whether they were asked for or not.
-  Json to_json(const EigenDecomposition& eigen, Index components) const {
-    std::vector<double> values(static_cast<std::size_t>(components - eigen.null_count), 0.0);
+  Json to_json(const EigenDecomposition& eigen, const VectorBounds& vectors,
+               Index components) const {
+    const auto left_out = static_cast<std::size_t>(components - eigen.null_count);
+    std::vector<double> values(left_out, 0.0);
     std::vector<double> bounds = values;
+    std::vector<double> sines = values;
+    std::vector<std::size_t> groups(left_out, 0);
+    sines.insert(sines.end(), vectors.sines.begin(), vectors.sines.end());
+    for (const Index first : vectors.group) {
+      groups.push_back(first < eigen.null_count ? 0 : left_out + static_cast<std::size_t>(first));
+    }
     values.insert(values.end(), eigen.values.begin(), eigen.values.end());
     bounds.insert(bounds.end(), eigen.bounds.begin(), eigen.bounds.end());
     return {{"schema", "isotherm.embed/1"},
@@ -143,6 +178,8 @@ struct EmbedVerb : OptionVerb<EmbedOptions> {
             {"converged", eigen.status == EigenStatus::converged},
             {"eigenvalues", values},
             {"bounds", bounds},
+            {"vector_bounds", sines},
+            {"vector_groups", groups},
             {"largest_residual", eigen.count() > 0 ? eigen.residuals.maxCoeff() : 0.0},
             {"orthogonality", eigen.orthogonality},
             {"seconds", eigen.seconds},

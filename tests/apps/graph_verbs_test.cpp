@@ -1,6 +1,7 @@
 // The verbs on plain weighted graphs.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <sstream>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "run_command.hpp"
 
@@ -90,6 +92,54 @@ TEST_F(GraphVerbs, EdgesTakesPositions) {
   EXPECT_THAT(error_of("node,x,y\n100,0,0\n"), HasSubstr("no position of this vertex (got '101')"));
   EXPECT_THAT(error_of(text + "100,0,0\n"), HasSubstr("bad.csv:43"));
   EXPECT_THAT(error_of("node,x,y\n100,nan,0\n"), HasSubstr("a finite number"));
+}
+
+TEST_F(GraphVerbs, PositionsWithoutAUseAreRefused) {
+  make_strip();
+  std::string rows = "node,x,y\n";
+  for (int v = 0; v < 40; ++v) rows += std::to_string(100 + v) + "," + std::to_string(v) + ",0\n";
+  write_text(folder / "xy.csv", rows);
+  for (const std::string method : {"heat", "jaccard", "resistance"}) {
+    const std::string edges = "edges strip.csv --positions xy.csv --method " + method;
+    const auto result = run(edges + " -o kept.csv");
+    EXPECT_EQ(result.code, 2) << method;
+    EXPECT_THAT(result.err, HasSubstr("positions: have no use"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "kept.csv"));
+    run_ok(edges + " --svg map.svg");
+  }
+}
+
+TEST_F(GraphVerbs, ResistancesWithoutABoundAreFlagged) {
+  // Weights over more than 200 decades.
+  write_text(folder / "wide.csv", "0,1,1e-150\n1,2,1e150\n2,0,1\n2,3,1\n3,0,1\n");
+  const auto wide = run("edges wide.csv --method resistance --json result.json");
+  EXPECT_EQ(wide.code, 0) << wide.err;
+  EXPECT_THAT(wide.err, HasSubstr("warning: effective resistances have no proven bound"));
+  EXPECT_THAT(read_text(folder / "result.json"), HasSubstr("no proven bound"));
+  make_strip();
+  const auto strip = run("edges strip.csv --method resistance");
+  EXPECT_EQ(strip.code, 0);
+  EXPECT_EQ(strip.err.find("bound"), std::string::npos) << strip.err;
+}
+
+TEST_F(GraphVerbs, EmbedSaysHowWellVectorsAreKnown) {
+  std::string ring;
+  for (int v = 0; v < 30; ++v)
+    ring += std::to_string(v) + "," + std::to_string((v + 1) % 30) + "\n";
+  write_text(folder / "ring.csv", ring);
+  const auto whole = run("embed ring.csv --dimensions 2 -o rows.csv --json -");
+  EXPECT_EQ(whole.code, 0);
+  EXPECT_EQ(whole.err.find("warning"), std::string::npos) << whole.err;
+  auto json = nlohmann::json::parse(whole.out);
+  EXPECT_EQ(json["vector_groups"], nlohmann::json({0, 1, 1}));
+  for (const double bound : json["vector_bounds"]) EXPECT_LT(bound, 1e-10);
+  // The third coordinate is one of two with the same eigenvalue.
+  const auto part = run("embed ring.csv --dimensions 3 -o rows.csv --json -");
+  EXPECT_THAT(part.err, HasSubstr("warning: the last 1 coordinate cannot be told from the next"));
+  json = nlohmann::json::parse(part.out);
+  EXPECT_EQ(json["vector_groups"], nlohmann::json({0, 1, 1, 3}));
+  EXPECT_EQ(json["vector_bounds"][3], 1.0);
+  EXPECT_EQ(json["eigenvalues"].size(), 4U);
 }
 
 TEST_F(GraphVerbs, EmbedWritesOneRowAVertex) {

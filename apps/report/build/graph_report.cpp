@@ -97,6 +97,7 @@ Report graph_report(const WeightedGraph& graph, const WeightedGraph& left,
   add_layouts(report, graph, left, run, context.progress);
   add_candidates(report, graph, result.verdicts);
   add_spectral(report, graph, run.options, context);
+  report.warnings = result.warnings;
   report.truth_note = "A plain graph has no true positions to compare with.";
   const auto parts = [](const WeightedGraph& part) { return connected_components(part).count; };
   report.summary = {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "console.hpp"
+#include "isotherm/base/words.hpp"
 #include "isotherm/geometry/points/point_alignment.hpp"
 #include "isotherm/network/io/position_file.hpp"
 #include "option_verb.hpp"
@@ -36,8 +37,9 @@ struct EvalPositions : OptionVerb<NoOptions> {
     const double rmsd = std::sqrt((estimated - expected).squaredNorm() / count);
     const double median = errors[errors.size() / 2];
     if (flags.json != "-") {
-      write_text("-", fmt::format("RMSD {:.6g}  median {:.6g}  max {:.6g}  ({} nodes{})\n", rmsd,
-                                  median, errors.back(), errors.size(), align ? ", aligned" : ""));
+      write_text("-", fmt::format("RMSD {:.6g}  median {:.6g}  max {:.6g}  ({}{})\n", rmsd, median,
+                                  errors.back(), counted(errors.size(), "node"),
+                                  align ? ", aligned" : ""));
     }
     write_json(flags.json, {{"schema", "isotherm.eval.positions/1"},
                             {"rmsd", rmsd},

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "console.hpp"
+#include "isotherm/base/words.hpp"
 #include "isotherm/slam/evaluate/trajectory_metrics.hpp"
 #include "option_verb.hpp"
 #include "verbs/evaluate/trajectory_input.hpp"
@@ -61,9 +62,9 @@ struct EvalRpe : OptionVerb<RelativeErrorOptions> {
         [&](const auto& pairs) {
           const auto errors = relative_pose_error(pairs, options);
           if (flags.json != "-") {
-            write_text("-", fmt::format("RPE over {} poses: {}\n  rotation: {}\n", options.delta,
-                                        line_of(errors.translation, "m"),
-                                        line_of(errors.rotation, "rad")));
+            write_text("-", fmt::format(
+                                "RPE over {}: {}\n  rotation: {}\n", counted(options.delta, "pose"),
+                                line_of(errors.translation, "m"), line_of(errors.rotation, "rad")));
           }
           Json json = {{"schema", "isotherm.eval.rpe/1"}};
           json.update(options_to_json(options));

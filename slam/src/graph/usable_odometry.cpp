@@ -84,8 +84,7 @@ template <class Pose>
 std::string describe_unusable(const PoseGraph<Pose>& graph, const std::vector<Index>& unusable) {
   const auto& first = graph.constraints[unusable.front()];
   std::string text = "odometry edge " + std::to_string(unusable.front()) + ", from vertex " +
-                     std::to_string(graph.ids[first.from]) + " to " +
-                     std::to_string(graph.ids[first.to]);
+                     vertex_name(graph.ids[first.from]) + " to " + vertex_name(graph.ids[first.to]);
   if (unusable.size() > 1) text += ", and " + std::to_string(unusable.size() - 1) + " more";
   return text + ": information matrix too near to a singular one";
 }

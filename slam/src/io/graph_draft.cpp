@@ -198,9 +198,8 @@ class Finisher {
                                                           : known * constraint.T_from_to.inverse();
       placed[neighbour] = true;
       queue.push_back(neighbour);
-      report_.add_repair(options_,
-                         {"vertex placed", at(edge), std::to_string(graph_.ids[neighbour]),
-                          "vertex has no line of its own; placed by this edge"});
+      report_.add_repair(options_, {"vertex placed", at(edge), vertex_name(graph_.ids[neighbour]),
+                                    "vertex has no line of its own; placed by this edge"});
     }
   }
 
@@ -208,7 +207,7 @@ class Finisher {
     report_.add_repair(options_,
                        {"vertex placed",
                         {report_.path, 0, 0},
-                        std::to_string(graph_.ids[vertex]),
+                        vertex_name(graph_.ids[vertex]),
                         "vertex has no line of its own and no edge leads to it from one that has; "
                         "placed at the origin"});
   }

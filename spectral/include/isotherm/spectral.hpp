@@ -19,6 +19,7 @@
 #include "isotherm/spectral/edges/verdict_file.hpp"
 #include "isotherm/spectral/eigen/eigen_decomposition.hpp"
 #include "isotherm/spectral/eigen/embedding.hpp"
+#include "isotherm/spectral/eigen/vector_bounds.hpp"
 #include "isotherm/spectral/graph/graph_file.hpp"
 #include "isotherm/spectral/graph/laplacian.hpp"
 #include "isotherm/spectral/graph/weighted_graph.hpp"

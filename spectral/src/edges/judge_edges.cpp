@@ -158,7 +158,9 @@ JudgeEdgesResult judge_by_scores(const WeightedGraph& graph, const Structure& st
   const auto threshold = control ? threshold_by_control(questioned, scores.pairs, options.chance)
                                  : find_threshold(questioned, {.rule = rule_of(options.threshold),
                                                                .konst = options.konst});
-  return judge_all(graph, structure, scores.edges, threshold, enum_name(options.method));
+  auto result = judge_all(graph, structure, scores.edges, threshold, enum_name(options.method));
+  result.warnings = scores.warnings;
+  return result;
 }
 
 MultiscaleHeatOptions multiscale_options(const JudgeEdgesOptions& options) {

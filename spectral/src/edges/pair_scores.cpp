@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
+#include <utility>
 
 #include "edges/thin_out.hpp"
 #include "isotherm/base/error.hpp"
@@ -94,11 +96,24 @@ PairScores affinity_scores(const WeightedGraph& graph, const std::vector<VertexP
           affinity_scores(heat_affinities(graph, detail::thin_out(pairs), scales, heat).values)};
 }
 
+std::string words_without_bound(const ResistanceResult& resistances) {
+  char residual[32];
+  std::snprintf(residual, sizeof residual, "%.1e", resistances.residual);
+  return std::string(
+             "effective resistances have no proven bound here, because the graph is too "
+             "large for exact eliminations or its weights span more than 200 decades; "
+             "largest residual ") +
+         residual;
+}
+
 PairScores resistance_scores(const WeightedGraph& graph, const std::vector<VertexPair>& pairs,
                              const RunContext& run) {
   constexpr std::size_t kMostSolves = 1000;
   PairScores scores;
-  scores.edges = edge_resistances(graph).without;
+  auto resistances = edge_resistances(graph);
+  if (!std::isfinite(resistances.bound))
+    scores.warnings.push_back(words_without_bound(resistances));
+  scores.edges = std::move(resistances.without);
   LaplacianSolver solver{Laplacian(graph)};
   const auto component = connected_components(graph).label;
   Eigen::VectorXd current = Eigen::VectorXd::Zero(graph.vertex_count());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "isotherm/base/run_context.hpp"
@@ -13,6 +14,7 @@ namespace isotherm::spectral::detail {
 struct PairScores {
   std::vector<double> edges;
   std::vector<double> pairs;
+  std::vector<std::string> warnings;  ///< what the scores cannot be trusted for
 };
 
 /// The score of ends about which nothing is known.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "isotherm/base/text_writer.hpp"
+#include "isotherm/base/words.hpp"
 #include "isotherm/spectral/graph/graph_file.hpp"
 
 namespace isotherm::spectral {
@@ -60,7 +61,8 @@ void merge_directions(GraphFile& file, const ReadOptions& options) {
   file.report.add_note({"edge in both directions",
                         {file.report.path, 0, 0},
                         "",
-                        std::to_string(count) + " edges stand in both directions; counted once"});
+                        counted(count, "edge") + (count == 1 ? " stands" : " stand") +
+                            " in both directions; counted once"});
   file.graph = WeightedGraph(file.graph.vertex_count(), std::move(merged));
 }
 

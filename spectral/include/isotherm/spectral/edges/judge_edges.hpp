@@ -3,6 +3,7 @@
 #include <array>
 #include <concepts>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -117,6 +118,8 @@ void visit_fields(Options& options, Visitor&& visit) {
 struct JudgeEdgesResult {
   EdgeVerdicts verdicts;  ///< one an edge, in order of id; vertices by position
   Threshold threshold;    ///< by control, its separation is the mean of |2 p - 1|
+  /// What the scores cannot be trusted for: resistances without a proven bound, say.
+  std::vector<std::string> warnings;
   double seconds = 0.0;
 };
 
