@@ -54,6 +54,12 @@ std::string help_row(const std::string& name, const std::string& text) {
   return page + '\n';
 }
 
+std::string help_table(std::string_view heading, std::span<const HelpChoice> choices) {
+  std::string table = std::string(heading) + "\n";
+  for (const auto& [name, use] : choices) table += help_row(std::string(name), std::string(use));
+  return table + "\n";
+}
+
 HelpFormatter::HelpFormatter() { column_width(kNameWidth); }
 
 std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positional) const {

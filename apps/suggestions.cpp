@@ -66,8 +66,12 @@ std::string what_was_meant(const CLI::App& root, const std::vector<std::string>&
     if (!word.starts_with("--")) continue;
     const auto name = word.substr(0, word.find('='));
     if (app->get_option_no_throw(name) != nullptr) continue;
-    return with_suggestion(fmt::format("{} has no flag {}", app->get_name(), name),
-                           nearest_word(name, flags_of(*app)));
+    const auto problem = fmt::format("{} has no flag {}", app->get_name(), name);
+    const auto flag = nearest_word(name, flags_of(*app));
+    const auto verb = nearest_word(name.substr(2), names_of(verbs_of(root)));
+    // A step of its own is often taken for a flag.
+    if (flag.empty() && !verb.empty()) return with_suggestion(problem, "the verb " + verb);
+    return with_suggestion(problem, flag);
   }
   return {};
 }

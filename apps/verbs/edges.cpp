@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -9,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "console.hpp"
+#include "help_formatter.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/words.hpp"
 #include "isotherm/geometry/points/neighbour_graph.hpp"
@@ -26,6 +28,22 @@ namespace isotherm::apps {
 namespace {
 
 using namespace spectral;
+
+// What each method needs, when it is the one to take, and what it costs.
+constexpr std::array<HelpChoice, 7> kEdgeMethods = {{
+    {"heat",
+     "the default: walks between the ends of an edge without it; finds false edges side by side, "
+     "too. Vertices times the edges a few steps around"},
+    {"heat-multiscale",
+     "heat distance, from large scales to small ones, as the paper has it; knows trusted edges. "
+     "Some sparse factorisations a scale"},
+    {"affinity", "heat at one scale, with proven bounds. A heat distance an edge"},
+    {"resistance",
+     "how badly the rest conducts. Poor where neighbourhoods are dense; some ten factorisations"},
+    {"jaccard", "share of common neighbours. Needs triangles; quickest"},
+    {"common-neighbours", "number of common neighbours. The same"},
+    {"rank", "how many vertices lie nearer. Needs --positions or points; quick"},
+}};
 
 struct EdgesVerb : OptionVerb<JudgeEdgesOptions> {
   std::string input;
@@ -185,6 +203,7 @@ Verb add_edges(CLI::App& root) {
                  "leave out edges that are not proven either way, too, such as bridges");
   edges->explain.add_to(*verb, outputs);
   edges->add_flags(*verb);
+  verb->footer(help_table("Methods:", kEdgeMethods));
   return verb_of(verb, edges);
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "console.hpp"
+#include "help_formatter.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/text_writer.hpp"
 #include "isotherm/base/words.hpp"
@@ -95,6 +96,13 @@ std::string npy_text(const Eigen::MatrixXd& rows) {
               static_cast<std::size_t>(rows.size()) * sizeof(double));
   return text;
 }
+
+// What each method needs, when it is the one to take, and what it costs.
+constexpr std::array<HelpChoice, 3> kEmbeddings = {{
+    {"commute-time", "the default: distances are those of resistances, for drawings and search"},
+    {"heat", "what is near after the diffusion time --scale; tells components apart"},
+    {"eigenmaps", "the eigenvectors themselves, all of one size, for clustering"},
+}};
 
 struct EmbedVerb : OptionVerb<EmbedOptions> {
   std::string input;
@@ -208,6 +216,7 @@ Verb add_embed(CLI::App& root) {
            "coordinates to write: CSV, or NumPy if named .npy (- for stdout)", {".csv", ".npy"})
       ->required();
   embed->add_flags(*verb);
+  verb->footer(help_table("Methods (all cost the same eigenpairs):", kEmbeddings));
   return verb_of(verb, embed);
 }
 

@@ -1,6 +1,7 @@
 #include "isotherm/slam/optimize/optimize.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <variant>
@@ -9,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "console.hpp"
+#include "help_formatter.hpp"
 #include "isotherm/base/words.hpp"
 #include "isotherm/slam/graph/trusted_edges.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
@@ -21,6 +23,19 @@ namespace isotherm::apps {
 namespace {
 
 using namespace slam;
+
+// What each kernel needs, when it is the one to take, and what it costs.
+constexpr std::array<HelpChoice, 7> kKernels = {{
+    {"none", "the default: least squares, for graphs that are pruned. Quickest"},
+    {"huber", "large errors count by their size, not its square: tails, not false loops"},
+    {"cauchy", "heavy tails: few false loops. A few more iterations"},
+    {"dcs", "loops fade out by how badly they fit. Needs odometry that is nearly right"},
+    {"sc", "switchable constraints: the same with a switch a loop. At the cost of dcs"},
+    {"gnc",
+     "truncated least squares, approached from a convex start: many false loops. Some "
+     "ten optimisations"},
+    {"gnc-gm", "the same with Geman and McClure's kernel, which leaves no loop out altogether"},
+}};
 
 struct OptimizeVerb : OptionVerb<OptimizeOptions> {
   std::vector<std::string> input;
@@ -114,6 +129,7 @@ Verb add_optimize(CLI::App& root) {
                    "CSV of edges to trust in place of odometry (edge, or from,to)")
       ->type_name("FILE");
   optimize->add_flags(*verb);
+  verb->footer(help_table("Kernels:", kKernels));
   return verb_of(verb, optimize);
 }
 

@@ -35,13 +35,8 @@ const Preset& preset_of(const std::string& name) {
   throw InvalidArgument("preset", "there is none called '" + name + "'");
 }
 
-struct MethodUse {
-  std::string_view name;
-  std::string_view use;
-};
-
 // What each method needs, when it is the one to take, and what it costs.
-constexpr std::array<MethodUse, 11> kUses = {{
+constexpr std::array<HelpChoice, 11> kUses = {{
     {"consensus",
      "the default: accepts loops that odometry and each other prove. Needs information "
      "that can be used; some factorisations a round"},
@@ -64,12 +59,6 @@ constexpr std::array<MethodUse, 11> kUses = {{
     {"cauchy", "one optimisation under a kernel with heavy tails. Few false loops only"},
     {"gnc", "graduated non-convexity: some ten optimisations. Many false loops"},
 }};
-
-std::string table_of_methods() {
-  std::string table = "Methods:\n";
-  for (const auto& [name, use] : kUses) table += help_row(std::string(name), std::string(use));
-  return table + "\n";
-}
 
 bool take(PruneOptions& options, std::string_view key, const Json& value) {
   return std::visit([&](auto& own) { return detail::take_field(own, key, value); }, options);
@@ -117,7 +106,7 @@ void PruneFlags::add_to(CLI::App& verb) {
           described)
       ->type_name("NAME");
   for (const auto& method : prune_methods()) add_fields_of(verb, method);
-  verb.footer(table_of_methods() +
+  verb.footer(help_table("Methods:", kUses) +
               "Each method has options of its own: isotherm prune --method NAME --help");
 }
 

@@ -1,4 +1,5 @@
 // What the command says when it is misunderstood, and how it names things.
+#include <sstream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -35,9 +36,36 @@ TEST_F(Messages, SuggestWhatWasMeant) {
   EXPECT_THAT(error("edges a.csv --neighbors 5", 2),
               HasSubstr("edges has no flag --neighbors; did you mean --neighbours?"));
   EXPECT_THAT(error("prune a.g2o --verdict=v.csv", 2), HasSubstr("did you mean --verdicts?"));
-  EXPECT_THAT(error("prune a.g2o --optimise", 2), HasSubstr("prune has no flag --optimise"));
+  EXPECT_THAT(error("prune a.g2o --optimise", 2),
+              HasSubstr("prune has no flag --optimise; did you mean the verb optimize?"));
+  EXPECT_THAT(error("--prune a.g2o", 2), HasSubstr("did you mean the verb prune?"));
+  EXPECT_THAT(error("prune a.g2o --fly", 2), HasSubstr("prune has no flag --fly (see --help)"));
   EXPECT_THAT(run_ok("help"), HasSubstr("prune"));
   EXPECT_EQ(run_ok("help prune"), run_ok("prune --help"));
+}
+
+TEST_F(Messages, HelpSaysWhenToTakeWhichMethod) {
+  // Every choice of the option has a row of its own below a heading.
+  const auto expect_table = [this](const std::string& verb, const std::string& option) {
+    const auto help = run_ok(verb + " --help");
+    auto choices = help.substr(help.find("  " + option + " ") + option.size() + 3);
+    // A list that is too long for its line goes on in the next.
+    for (auto at = choices.find("|\n"); at != choices.npos && at < 120;) {
+      const auto next = choices.find_first_not_of(" \n", at + 1);
+      choices.erase(at + 1, next - at - 1);
+      at = choices.find("|\n");
+    }
+    std::istringstream names(choices.substr(0, choices.find_first_of(" \n")));
+    int count = 0;
+    for (std::string name; std::getline(names, name, '|'); ++count) {
+      EXPECT_THAT(help, HasSubstr("\n  " + name + " ")) << verb << " " << name;
+    }
+    EXPECT_GT(count, 2) << verb;
+  };
+  expect_table("prune", "--method");
+  expect_table("edges", "--method");
+  expect_table("embed", "--method");
+  expect_table("optimize", "--kernel");
 }
 
 TEST_F(Messages, NameWhatTheFileIs) {
