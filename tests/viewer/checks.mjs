@@ -210,7 +210,34 @@ export async function checkSteps(page) {
   assert.notEqual(await chosen(), first);
   await page.keyboard.press('p');
   assert.equal(await chosen(), first);
+  for (const place of ['.stage', '.grid', '[data-layer]', '[data-filter=keep]', '#theme',
+    '.head button', '[data-save]', '.buttons button', '.scroll']) {
+    const before = await chosen();
+    await page.focus(place);
+    await page.keyboard.press('n');
+    assert.notEqual(await chosen(), before, `N does nothing at ${place}`);
+    await page.focus(place);
+    await page.keyboard.press('p');
+    assert.equal(await chosen(), before, `P does nothing at ${place}`);
+  }
+  // Where text is written they are letters.
+  await page.focus('[data-filter=text]');
+  await page.keyboard.press('n');
+  assert.equal(await page.$eval('[data-filter=text]', (input) => input.value), 'n');
+  await page.keyboard.press('Backspace');
+  await page.focus('.stage');
   await page.keyboard.press('Escape');
+}
+
+/** On a phone a row begins with the verdict, all of which is in sight. */
+export async function checkVerdictInSight(page) {
+  const [verdict, others, edge] = await page.evaluate(() => {
+    const left = (element) => element.getBoundingClientRect().left;
+    const cell = document.querySelector('.rows .col-verdict');
+    const rest = [...cell.parentElement.children].filter((element) => element !== cell).map(left);
+    return [cell.getBoundingClientRect().right, Math.min(...rest), window.innerWidth];
+  });
+  assert.ok(verdict <= others && verdict < edge, `${verdict}, ${others}, ${edge}`);
 }
 
 /** Switching a layer off takes it from the map, and on brings it back. */
