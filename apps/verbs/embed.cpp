@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <memory>
+#include <vector>
 
 #include <fmt/format.h>
 
