@@ -44,6 +44,30 @@ TEST_F(Messages, SuggestWhatWasMeant) {
   EXPECT_EQ(run_ok("help prune"), run_ok("prune --help"));
 }
 
+TEST_F(Messages, CountInWordsThatFit) {
+  write_text(folder / "both.csv", "0,1,1\n1,0,1\n1,2,1\n2,0,1\n");
+  const auto edges = run("edges both.csv --method jaccard");
+  EXPECT_THAT(edges.err, HasSubstr(": 1 edge stands in both directions; counted once\n"));
+  EXPECT_THAT(edges.err, HasSubstr("jaccard: 3 edges, "));
+  run_ok("simulate city --poses 30 --loops 5 --seed 1 -q -o a.g2o --ground-truth t.g2o");
+  EXPECT_THAT(run_ok("eval rpe a.g2o t.g2o"), StartsWith("RPE over 1 pose: "));
+  EXPECT_THAT(run_ok("eval rpe a.g2o t.g2o --delta 2"), StartsWith("RPE over 2 poses: "));
+  EXPECT_THAT(run("densify a.g2o -o d.g2o --copies 1").err,
+              HasSubstr("densified: 5 loops of the input, "));
+}
+
+TEST_F(Messages, KeysHaveLettersInRepairs) {
+  // a0, a1 and c66, which has no line of its own.
+  write_text(folder / "keys.g2o",
+             "VERTEX_SE2 6989586621679009792 0 0 0\nVERTEX_SE2 6989586621679009793 1 0 0\n"
+             "EDGE_SE2 6989586621679009792 6989586621679009793 1 0 0 1 0 0 1 0 1\n"
+             "EDGE_SE2 6989586621679009793 7133701809754865730 1 0 0 1 0 0 1 0 1\n");
+  const auto result = run("prune keys.g2o");
+  EXPECT_EQ(result.code, 0);
+  EXPECT_THAT(result.err, HasSubstr("placed by this edge (got 'c66')"));
+  EXPECT_EQ(result.err.find("7133701809754865730"), std::string::npos) << result.err;
+}
+
 TEST_F(Messages, HelpSaysWhenToTakeWhichMethod) {
   // Every choice of the option has a row of its own below a heading.
   const auto expect_table = [this](const std::string& verb, const std::string& option) {
