@@ -128,7 +128,7 @@ TEST_F(TruthMatch, RealTruthOfACamera) {
   const auto result = run("eval rpe '" + (path / "kitti_07.g2o").string() + "' '" +
                           (path / "poses_07.txt").string() + "'");
   EXPECT_EQ(result.code, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("RPE over 1 poses: mean 0.0"));
+  EXPECT_THAT(result.out, HasSubstr("RPE over 1 pose: mean 0.0"));
 }
 
 }  // namespace
