@@ -50,14 +50,16 @@ def information_of(upper, dof):
 
 
 def read_g2o(path):
-    """Vertex poses and edges (from, to, pose, information) in GTSAM's types."""
-    poses, edges = {}, []
+    """Vertex poses and edges (from, to, pose, information) in GTSAM's types. Edges that repeat
+    another one to the last digit count once, as they do for Isotherm."""
+    poses, edges, known = {}, [], set()
     with open(path, encoding="utf-8") as file:
         for line in file:
             tag, *rest = line.split()
             if tag in ("VERTEX_SE2", "VERTEX_SE3:QUAT"):
                 poses[int(rest[0])] = pose_of([float(v) for v in rest[1:]])
-            elif tag in ("EDGE_SE2", "EDGE_SE3:QUAT"):
+            elif tag in ("EDGE_SE2", "EDGE_SE3:QUAT") and tuple(rest) not in known:
+                known.add(tuple(rest))
                 size, dof = (3, 3) if tag == "EDGE_SE2" else (7, 6)
                 values = [float(v) for v in rest[2:]]
                 information = information_of(values[size:], dof)
