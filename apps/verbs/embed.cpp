@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <memory>
@@ -9,11 +7,9 @@
 
 #include "console.hpp"
 #include "help_formatter.hpp"
-#include "isotherm/base/error.hpp"
 #include "isotherm/base/text_writer.hpp"
 #include "isotherm/base/words.hpp"
-#include "isotherm/spectral/eigen/embedding.hpp"
-#include "isotherm/spectral/eigen/vector_bounds.hpp"
+#include "isotherm/spectral/eigen/embed.hpp"
 #include "isotherm/spectral/graph/graph_file.hpp"
 #include "option_verb.hpp"
 #include "verbs/verbs.hpp"
@@ -22,47 +18,6 @@ namespace isotherm::apps {
 namespace {
 
 using namespace spectral;
-
-enum class Embedding { commute_time, heat, eigenmaps };
-
-constexpr std::array<EnumName<Embedding>, 3> enum_names(Embedding) {
-  return {{{Embedding::commute_time, "commute-time"},
-           {Embedding::heat, "heat"},
-           {Embedding::eigenmaps, "eigenmaps"}}};
-}
-
-struct EmbedOptions {
-  Embedding method = Embedding::commute_time;
-  // Columns, >= 1. Null eigenvectors have none, but for heat, if there are several.
-  std::int64_t dimensions = 2;
-  double scale = 1.0;  // diffusion time, for heat; finite, >= 0
-  LaplacianKind laplacian = LaplacianKind::combinatorial;
-
-  void validate() const { require_fields_in_range(*this); }
-};
-
-template <class Options, class Visitor>
-requires std::same_as<std::remove_const_t<Options>, EmbedOptions>
-void visit_fields(Options& options, Visitor&& visit) {
-  visit("method", options.method, "coordinates to compute");
-  visit("dimensions", options.dimensions,
-        "number of coordinates; for heat those that tell components apart come first",
-        closed(1, 1e6));
-  visit("scale", options.scale, "heat: diffusion time", closed(0, 1e12));
-  visit("laplacian", options.laplacian, "matrix whose eigenvectors are used");
-}
-
-Eigen::MatrixXd coordinates(const EigenDecomposition& eigen, const EmbedOptions& options) {
-  switch (options.method) {
-    case Embedding::commute_time:
-      return commute_time_embedding(eigen);
-    case Embedding::heat:
-      return heat_embedding(eigen, options.scale);
-    case Embedding::eigenmaps:
-      return laplacian_eigenmap(eigen);
-  }
-  throw InvalidArgument("method", "is not an embedding");
-}
 
 std::string csv_text(const Eigen::MatrixXd& rows, const std::vector<std::uint64_t>& ids) {
   std::string text = "vertex";
@@ -114,55 +69,31 @@ struct EmbedVerb : OptionVerb<EmbedOptions> {
     auto file = read_graph(input, {.strict = flags.strict});
     merge_directions(file, {.strict = flags.strict});
     for (const auto& diagnostic : file.report.diagnostics) warn(flags, to_string(diagnostic));
-    const Laplacian laplacian(file.graph, options.laplacian);
-    const Index components = laplacian.components().count;
-    // Heat tells components apart by the null space, in which one component has one point.
-    const bool null_vectors = options.method == Embedding::heat && components > 1;
-    const Index available = laplacian.size() - (null_vectors ? 0 : components);
-    if (available < options.dimensions) {
-      warn(flags, fmt::format("the graph has only {}", counted(available, "coordinate")));
-    }
-    if (null_vectors && options.dimensions < components) {
-      warn(flags, fmt::format("{} coordinates do not tell {} components apart", options.dimensions,
-                              components));
-    }
-    EigenOptions eigen_options;
-    const auto wanted = static_cast<Index>(
-        std::clamp<std::int64_t>(options.dimensions, 1, std::max<Index>(1, available)));
-    // The next value tells whether the last vector stands alone.
-    const bool complete = available <= wanted;
-    eigen_options.count = complete ? wanted : wanted + 1;
-    eigen_options.null_vectors = null_vectors;
-    eigen_options.progress = progress_line(flags);
-    auto eigen = smallest_eigenpairs(laplacian, eigen_options);
-    auto vectors = vector_bounds(eigen, complete);
-    if (eigen.null_count <= wanted) warn_of_choice(vectors, wanted);
-    shorten(eigen, vectors, wanted);
-    const auto rows = coordinates(eigen, options);
-    report(eigen, components);
-    write_text(output, format_suffix(output) == ".npy" ? npy_text(rows) : csv_text(rows, file.ids));
-    write_json(flags.json, to_json(eigen, vectors, components));
+    const auto result = embed(file.graph, options, progress_line(flags));
+    warn_of_lack(result);
+    const auto& eigen = result.eigen;
+    report(eigen, result.components);
+    write_text(output, format_suffix(output) == ".npy" ? npy_text(result.rows)
+                                                       : csv_text(result.rows, file.ids));
+    write_json(flags.json, to_json(eigen, result.vectors, result.components));
     return eigen.status == EigenStatus::converged ? kOk : kNotConverged;
   }
 
-  // Vectors of one value are as good as any turn of them, and here some of them are left out.
-  void warn_of_choice(const VectorBounds& vectors, Index wanted) const {
-    if (static_cast<Index>(vectors.group.size()) <= wanted) return;
-    const Index first = vectors.group[static_cast<std::size_t>(wanted)];
-    if (first >= wanted) return;
-    warn(flags, fmt::format("the last {} cannot be told from the next: any other choice of vectors "
-                            "with these eigenvalues is as good",
-                            counted(wanted - first, "coordinate")));
-  }
-
-  static void shorten(EigenDecomposition& eigen, VectorBounds& vectors, Index count) {
-    count = std::min(count, eigen.count());
-    eigen.values.conservativeResize(count);
-    eigen.vectors.conservativeResize(Eigen::NoChange, count);
-    eigen.residuals.conservativeResize(count);
-    eigen.bounds.conservativeResize(count);
-    vectors.sines.conservativeResize(count);
-    vectors.group.resize(static_cast<std::size_t>(count));
+  void warn_of_lack(const EmbedResult& result) const {
+    if (result.available < options.dimensions) {
+      warn(flags, fmt::format("the graph has only {}", counted(result.available, "coordinate")));
+    }
+    const bool several = options.method == Embedding::heat && result.components > 1;
+    if (several && options.dimensions < result.components) {
+      warn(flags, fmt::format("{} coordinates do not tell {} components apart", options.dimensions,
+                              result.components));
+    }
+    // Vectors of one value are as good as any turn of them, and here some of them are left out.
+    if (result.interchangeable > 0) {
+      warn(flags, fmt::format("the last {} cannot be told from the next: any other choice of "
+                              "vectors with these eigenvalues is as good",
+                              counted(result.interchangeable, "coordinate")));
+    }
   }
 
   // Null eigenvalues come first, one a component, whether they were asked for or not.

@@ -18,6 +18,7 @@
 #include "isotherm/spectral/edges/threshold.hpp"
 #include "isotherm/spectral/edges/verdict_file.hpp"
 #include "isotherm/spectral/eigen/eigen_decomposition.hpp"
+#include "isotherm/spectral/eigen/embed.hpp"
 #include "isotherm/spectral/eigen/embedding.hpp"
 #include "isotherm/spectral/eigen/vector_bounds.hpp"
 #include "isotherm/spectral/graph/graph_file.hpp"
