@@ -6,7 +6,7 @@
 cmake_minimum_required(VERSION 3.25)
 
 # What each layer may include: other layers' headers, and private third parties.
-set(layers base spectral geometry network slam apps)
+set(layers base spectral geometry network slam apps python)
 set(base_layers base)
 set(base_private Eigen tbb oneapi boost fast_float zlib)
 set(spectral_layers base spectral)
@@ -19,6 +19,8 @@ set(slam_layers base spectral geometry network slam)
 set(slam_private Eigen nanoflann)
 set(apps_layers base spectral geometry network slam)
 set(apps_private Eigen CLI nlohmann fmt)
+set(python_layers base spectral geometry network slam)
+set(python_private Eigen nanobind)
 
 # Lists the files of a kind in a layer.
 function(layer_files layer kind result)

@@ -11,12 +11,12 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-LAYERS = ["base", "spectral", "geometry", "network", "slam", "apps"]
+LAYERS = ["base", "spectral", "geometry", "network", "slam", "apps", "python"]
 MOST_FILES = 20
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 # A row of the document's table of rooms: | `folder` | `first`, `second`, `header.hpp`, ... |
 ROW = re.compile(r"^\| `([a-z_/]+)` \| ((?:`[a-z0-9_.]+`(?:, )?)+) \|$", re.MULTILINE)
-THIRD_PARTIES = re.compile(r"^(Eigen|Spectra|CGAL|boost|CLI|nlohmann|fmt|oneapi|tbb|fast_float)/")
+THIRD_PARTIES = re.compile(r"^(Eigen|Spectra|CGAL|boost|CLI|nlohmann|fmt|nanobind|oneapi|tbb|fast_float)/")
 
 
 def stated_orders(root):

@@ -1,0 +1,161 @@
+#include "isotherm/slam/prune/prune.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "isotherm/base/error.hpp"
+#include "keywords.hpp"
+#include "modules.hpp"
+#include "slam/pose_graph.hpp"
+#include "slam/pruned.hpp"
+
+namespace isotherm::python {
+namespace {
+
+using namespace nanobind::literals;
+using slam::PruneOptions;
+
+std::vector<KeywordText> keywords_of_method(const PruneOptions& method) {
+  return std::visit([](const auto& own) { return keywords_of(own); }, method);
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const auto& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+// The methods that have the option.
+std::vector<std::string> owners(const std::string& name) {
+  std::vector<std::string> all;
+  for (const auto& method : slam::prune_methods()) {
+    const auto keywords = keywords_of_method(method);
+    const bool has = std::any_of(keywords.begin(), keywords.end(),
+                                 [&name](const KeywordText& own) { return own.name == name; });
+    if (has) all.emplace_back(method_name(method));
+  }
+  return all;
+}
+
+void require_own(const Keywords& keywords, const PruneOptions& options) {
+  for (const auto& name : keywords.left()) {
+    const auto methods = owners(name);
+    if (methods.empty()) continue;
+    throw nb::type_error((name + ": is an option of " + joined(methods) + ", not of method " +
+                          std::string(method_name(options)))
+                             .c_str());
+  }
+  keywords.finish();
+}
+
+Pruned prune_graph(nb::handle_t<PoseGraphFile> graph, const std::string& method, nb::handle trusted,
+                   nb::kwargs given) {
+  Keywords keywords("prune", std::move(given));
+  Pruned pruned{nb::borrow(graph), slam::prune_method(method), {}, {}};
+  std::visit([&keywords](auto& own) { keywords.take_fields(own); }, pruned.options);
+  const RunKeywords run = keywords.take_run();
+  require_own(keywords, pruned.options);
+  const auto& input = graph_of(pruned).graph;
+  pruned.roles = roles_of(input, trusted);
+  pruned.result = without_gil(run, [&](const RunContext& context) {
+    return std::visit(
+        [&](const auto& own) { return slam::prune(own, pruned.roles, pruned.options, context); },
+        input);
+  });
+  return pruned;
+}
+
+PoseGraphFile without_false(const Pruned& self, bool keep_ambiguous) {
+  const auto& file = graph_of(self);
+  return with_graph(file, apply_verdicts(file.graph, self.result.verdicts, keep_ambiguous));
+}
+
+nb::dict methods_of() {
+  nb::dict all;
+  for (const auto& method : slam::prune_methods()) {
+    nb::dict options;
+    for (const auto& keyword : keywords_of_method(method)) {
+      options[keyword.name.c_str()] = keyword.help;
+    }
+    all[std::string(method_name(method)).c_str()] = options;
+  }
+  return all;
+}
+
+// Every option of every method once. Its default is the method's own.
+std::vector<KeywordText> all_keywords() {
+  std::vector<KeywordText> all;
+  for (const auto& method : slam::prune_methods()) {
+    for (auto keyword : keywords_of_method(method)) {
+      const auto same = std::find_if(all.begin(), all.end(), [&](const KeywordText& other) {
+        return other.name == keyword.name;
+      });
+      if (same != all.end()) continue;
+      keyword.help = joined(owners(keyword.name)) + ": " + keyword.help + "; " + keyword.fallback +
+                     " unless given";
+      keyword.type += " | None";
+      keyword.fallback = "None";
+      all.push_back(std::move(keyword));
+    }
+  }
+  return all;
+}
+
+std::string method_type() {
+  std::vector<std::string> names;
+  for (const auto& method : slam::prune_methods()) {
+    names.push_back("'" + std::string(method_name(method)) + "'");
+  }
+  return "typing.Literal[" + joined(names) + "]";
+}
+
+}  // namespace
+
+void bind_prune(nb::module_& module) {
+  nb::class_<Pruned>(module, "PruneResult", "What was decided about the loops of a pose graph.")
+      .def_prop_ro("verdicts", verdicts_of, "A decision for each candidate, in file order.")
+      .def_prop_ro(
+          "method", [](const Pruned& self) { return self.result.method; },
+          "Name of the method that decided.")
+      .def_prop_ro(
+          "warnings", [](const Pruned& self) { return self.result.warnings; },
+          "What a user should know about the result.")
+      .def_prop_ro(
+          "seconds", [](const Pruned& self) { return self.result.seconds; }, "Wall time.")
+      .def_ro("graph", &Pruned::graph, nb::sig("def graph(self, /) -> PoseGraph"),
+              "The graph that was judged.")
+      .def("pruned", without_false, nb::kw_only(), "keep_ambiguous"_a = false,
+           "The graph without the loops that are pruned and, unless keep_ambiguous, without those "
+           "that are ambiguous. Poses are as they were: optimize() finds them.")
+      .def(
+          "to_dataframe",
+          [](const Pruned& self) {
+            const nb::object verdicts = nb::cast(verdicts_of(self));
+            return data_frame(columns(nb::cast<const Verdicts&>(verdicts), verdicts));
+          },
+          nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
+          "The verdicts, as a table of pandas.");
+
+  module.def("prune_methods", methods_of,
+             nb::sig("def prune_methods() -> dict[str, dict[str, str]]"),
+             "The methods of prune(), the default first, each with its options and their meaning.");
+  const std::string method(method_name(PruneOptions()));
+  const KeywordText trusted = {
+      "trusted", "numpy.typing.ArrayLike | None", "None",
+      "positions of edges that are trusted in place of odometry; all others are judged"};
+  define(module, "prune", "graph: PoseGraph, method: " + method_type() + " = '" + method + "'",
+         std::vector<KeywordText>{trusted} + all_keywords() + run_keywords(RunTexts::seed),
+         "PruneResult",
+         "Decide on every loop closure of a pose graph. Each method has options of its own; one of "
+         "another method is a TypeError.",
+         prune_graph, "graph"_a, "method"_a = method, nb::kw_only(), "trusted"_a = nb::none());
+}
+
+}  // namespace isotherm::python
