@@ -246,14 +246,16 @@ std::vector<Pose> initial_poses(const PoseGraph<Pose>& graph, const EdgeRoles& r
 
 template <class Pose>
 std::vector<Pose> switchable_poses(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                                   double width) {
+                                   double width, const ProgressCallback& progress) {
   std::vector<bool> robust(graph.constraints.size(), false);
   for (const Index k : roles.candidates) robust[k] = true;
   const auto odometry = initial_poses(graph, roles, Initialization::odometry);
   auto poses = odometry;
   NormalEquations<Pose> equations(graph);
   Eigen::VectorXd weights;
-  const auto summary = minimize_switchable(equations, robust, width, {}, poses, weights);
+  MinimizeOptions options;
+  options.progress = progress;
+  const auto summary = minimize_switchable(equations, robust, width, options, poses, weights);
   return summary.status == OptimizeStatus::diverged ? odometry : poses;
 }
 
@@ -261,7 +263,9 @@ template std::vector<Pose2> initial_poses(const PoseGraph<Pose2>&, const EdgeRol
                                           Initialization);
 template std::vector<Pose3> initial_poses(const PoseGraph<Pose3>&, const EdgeRoles&,
                                           Initialization);
-template std::vector<Pose2> switchable_poses(const PoseGraph<Pose2>&, const EdgeRoles&, double);
-template std::vector<Pose3> switchable_poses(const PoseGraph<Pose3>&, const EdgeRoles&, double);
+template std::vector<Pose2> switchable_poses(const PoseGraph<Pose2>&, const EdgeRoles&, double,
+                                             const ProgressCallback&);
+template std::vector<Pose3> switchable_poses(const PoseGraph<Pose3>&, const EdgeRoles&, double,
+                                             const ProgressCallback&);
 
 }  // namespace isotherm::slam

@@ -46,7 +46,12 @@ OptimizeOptions resolve(OptimizeOptions options, int dof) {
 // the spanning tree where that costs less, as it may where loops are false.
 template <class Pose>
 std::vector<Pose> starting_poses(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                                 Initialization method, const NormalEquations<Pose>& equations) {
+                                 Initialization method, const NormalEquations<Pose>& equations,
+                                 const ProgressCallback& progress) {
+  if (method == Initialization::switchable) {  // as long a work as what follows
+    const double width = default_kernel_width(RobustKernel::sc, Pose::kDof);
+    return switchable_poses(graph, roles, width, progress);
+  }
   if (method != Initialization::automatic) return initial_poses(graph, roles, method);
   auto tree = initial_poses(graph, roles, Initialization::spanning_tree);
   std::vector<Pose> chordal;
@@ -123,7 +128,8 @@ OptimizeResult<Pose> optimize(const PoseGraph<Pose>& graph, const EdgeRoles& rol
 
   OptimizeResult<Pose> result;
   NormalEquations<Pose> equations(prepared.graph);
-  result.poses = starting_poses(prepared.graph, roles, options.initialization, equations);
+  result.poses =
+      starting_poses(prepared.graph, roles, options.initialization, equations, run.progress);
   const auto summary =
       minimize_by_kernel(equations, robust, options, run, result.poses, result.weight);
 

@@ -34,9 +34,9 @@ MinimizeSummary minimize_graduated(NormalEquations<Pose>& equations,
 
 /// The optimum of switchable constraints of the given width over the candidates, from
 /// odometry; odometry where that diverges.
-/// @throws InvalidArgument as initial_poses()
+/// @throws InvalidArgument as initial_poses(), Cancelled
 template <class Pose>
 std::vector<Pose> switchable_poses(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                                   double width);
+                                   double width, const ProgressCallback& progress = {});
 
 }  // namespace isotherm::slam
