@@ -6,5 +6,6 @@ cd "$(dirname "$0")/.."
 
 scripts/install-deps.sh --tests
 scripts/viewer-env.sh
-scripts/build.sh test
+python=$(scripts/python-env.sh)
+scripts/build.sh test -DISOTHERM_BUILD_PYTHON=ON -DPython_EXECUTABLE="$python"
 ctest --preset test "$@"

@@ -5,7 +5,7 @@ and curves, `network` for sensor networks, `slam` for pose graphs.
 """
 
 from isotherm import geometry, network, slam, spectral
-from isotherm._core import __version__
+from isotherm._core import version
 from isotherm.errors import (
     Cancelled,
     Error,
@@ -15,6 +15,8 @@ from isotherm.errors import (
     ParseError,
 )
 from isotherm.progress import tqdm_progress
+
+__version__ = version()
 
 __all__ = [
     "Cancelled",

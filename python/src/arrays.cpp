@@ -28,11 +28,6 @@ std::string shape_text(std::initializer_list<std::int64_t> shape) {
 
 std::string text_of(nb::handle value) { return nb::cast<std::string>(nb::str(value)); }
 
-// A list of nothing has no dtype to speak of, and one axis.
-bool may_be_nothing(nb::handle array, std::initializer_list<std::int64_t> shape) {
-  return nb::cast<std::int64_t>(array.attr("size")) == 0 && *shape.begin() == kAny;
-}
-
 template <class T>
 void require_kind(nb::handle array, std::string_view what) {
   const auto kind = nb::cast<std::string>(array.attr("dtype").attr("kind"));
@@ -77,16 +72,16 @@ Input<T> numbers(nb::handle value, std::string_view what,
                  std::initializer_list<std::int64_t> shape) {
   const nb::module_ numpy = nb::module_::import_("numpy");
   nb::object array = numpy.attr("asarray")(value);
-  if (may_be_nothing(array, shape) && nb::cast<int>(array.attr("ndim")) == 1) {
+  const bool nothing = nb::cast<std::int64_t>(array.attr("size")) == 0;
+  if (!nothing) require_kind<T>(array, what);
+  // A list of nothing has one axis, and a type that says nothing.
+  if (nothing && *shape.begin() == kAny && nb::cast<int>(array.attr("ndim")) == 1) {
     nb::list lengths;
     for (const auto length : shape) lengths.append(length == kAny ? 0 : length);
     array = numpy.attr("zeros")(nb::tuple(lengths));
-  } else {
-    require_kind<T>(array, what);
   }
   require_shape(array, what, shape);
-  const bool empty = nb::cast<std::int64_t>(array.attr("size")) == 0;
-  if (std::integral<T> && !empty) require_representable(array, what, kTypeName<T>);
+  if (std::integral<T> && !nothing) require_representable(array, what, kTypeName<T>);
   array = numpy.attr("ascontiguousarray")(array, kTypeName<T>);
   return nb::cast<Input<T>>(array);
 }

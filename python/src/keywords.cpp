@@ -90,6 +90,7 @@ nb::object Keywords::take(std::string_view name) {
 RunKeywords Keywords::take_run() {
   RunKeywords run;
   take_into("threads", run.threads);
+  require_in_range("threads", run.threads, closed(0, 1e6));
   take_into("seed", run.seed);
   known_.emplace_back("progress");
   run.progress = take("progress");

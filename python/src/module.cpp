@@ -5,7 +5,8 @@
 NB_MODULE(_core, core) {
   using namespace isotherm::python;
   core.doc() = "The compiled part of isotherm.";
-  core.attr("__version__") = ISOTHERM_VERSION;
+  core.def(
+      "version", [] { return ISOTHERM_VERSION; }, "Of the library.");
   bind_errors();
 
   auto spectral = core.def_submodule("spectral", "Graphs: spectra, heat, resistances, edges.");

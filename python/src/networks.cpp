@@ -284,7 +284,8 @@ void bind_result(nb::module_& module) {
           "positions",
           [](const Localized& self) { return rows_of(self.positions, nb::find(self)); },
           "n x d; NaN where there is no unique place.")
-      .def_prop_ro("covariances", covariances, "n x d x d; NaN without a position, 0 for anchors.")
+      .def_prop_ro("covariances", covariances, nb::rv_policy::automatic,
+                   "n x d x d; NaN without a position, 0 for anchors.")
       .def_prop_ro("states", node_states, "'anchor', 'localised', or why a node has no position.")
       .def_prop_ro("verdicts", verdicts_of, "A decision for each range, in order.")
       .def_prop_ro(

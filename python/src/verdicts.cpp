@@ -90,13 +90,14 @@ void bind_verdicts(nb::module_& module) {
           "The numbers that the input gives to the vertices of each, m x 2.")
       .def_prop_ro("verdict", texts, "'keep', 'prune' or 'ambiguous'.")
       .def_prop_ro(
-          "kept", [](const Verdicts& self) { return mask(self, Verdict::keep); }, "Which are kept.")
+          "kept", [](const Verdicts& self) { return mask(self, Verdict::keep); },
+          nb::rv_policy::automatic, "Which are kept.")
       .def_prop_ro(
           "pruned", [](const Verdicts& self) { return mask(self, Verdict::prune); },
-          "Which are pruned.")
+          nb::rv_policy::automatic, "Which are pruned.")
       .def_prop_ro(
           "ambiguous", [](const Verdicts& self) { return mask(self, Verdict::ambiguous); },
-          "Which are proven neither way.")
+          nb::rv_policy::automatic, "Which are proven neither way.")
       .def_prop_ro(
           "score",
           [](const Verdicts& self) {

@@ -291,7 +291,8 @@ void bind_making(nb::class_<PoseGraphFile>& bound) {
       [](const PoseGraphFile& self, nb::handle poses) {
         return visit(self, [&](const auto& graph) { return with_poses_of(self, graph, poses); });
       },
-      "poses"_a, nb::sig("def with_poses(self, poses: numpy.typing.ArrayLike | None) -> PoseGraph"),
+      "poses"_a.none(),
+      nb::sig("def with_poses(self, poses: numpy.typing.ArrayLike | None) -> PoseGraph"),
       "The same graph with other poses, n x 3 or n x 7, or without any.");
 }
 
@@ -304,7 +305,7 @@ void bind_arrays(nb::class_<PoseGraphFile>& bound) {
             return visit(self, [&](const auto& graph) { return view(graph.ids, owner); });
           },
           "The number of each vertex, ascending, n.")
-      .def_prop_ro("poses", poses_of,
+      .def_prop_ro("poses", poses_of, nb::rv_policy::automatic,
                    nb::sig("def poses(self) -> numpy.typing.NDArray[numpy.float64] | None"),
                    "n x 3 (x, y, theta) or n x 7 (x, y, z, qx, qy, qz, qw), if they are known.")
       .def_prop_ro(
@@ -324,6 +325,7 @@ void bind_arrays(nb::class_<PoseGraphFile>& bound) {
               return pose_rows(&first_of(all).T_from_to, all.size(), sizeof(all[0]), owner);
             });
           },
+          nb::rv_policy::automatic,
           "The pose of `to` in the frame of `from` as measured, m x 3 or m x 7.")
       .def_prop_ro(
           "information",
