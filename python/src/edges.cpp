@@ -10,6 +10,7 @@
 #include "isotherm/spectral/edges/judge_edges.hpp"
 #include "keywords.hpp"
 #include "modules.hpp"
+#include "pages.hpp"
 #include "verdicts.hpp"
 
 namespace isotherm::python {
@@ -28,7 +29,7 @@ struct JudgedEdges {
 const Graph& graph_of(const JudgedEdges& self) { return nb::cast<const Graph&>(self.graph); }
 
 // Verdicts name the vertices as the input does.
-Verdicts verdicts_of(const JudgedEdges& self) {
+Verdicts named_verdicts(const JudgedEdges& self) {
   Verdicts named{self.result.verdicts};
   const auto& ids = graph_of(self).ids;
   for (auto& row : named.rows) {
@@ -42,6 +43,10 @@ Graph kept(const JudgedEdges& self, bool keep_ambiguous) {
   const Graph& graph = graph_of(self);
   return {apply_verdicts(graph.graph, self.result.verdicts, keep_ambiguous), graph.ids,
           graph.points};
+}
+
+std::string page(const JudgedEdges& self) {
+  return page_of(graph_of(self), self.options, self.result);
 }
 
 JudgedEdges judge(nb::handle_t<Graph> graph, nb::kwargs given) {
@@ -63,7 +68,7 @@ JudgedEdges judge(nb::handle_t<Graph> graph, nb::kwargs given) {
 
 void bind_edges(nb::module_& module) {
   nb::class_<JudgedEdges>(module, "JudgedEdges", "Which edges of a graph do not belong there.")
-      .def_prop_ro("verdicts", verdicts_of, "A decision for each edge, in order.")
+      .def_prop_ro("verdicts", named_verdicts, "A decision for each edge, in order.")
       .def_ro("graph", &JudgedEdges::graph, nb::sig("def graph(self, /) -> Graph"),
               "The graph that was judged.")
       .def_prop_ro(
@@ -78,10 +83,17 @@ void bind_edges(nb::module_& module) {
       .def("kept", kept, nb::kw_only(), "keep_ambiguous"_a = true,
            "The graph without the edges that are pruned and, unless keep_ambiguous, without those "
            "that are ambiguous.")
+      .def("report", page, nb::sig("def report(self) -> str"),
+           "The page that explains the result, as HTML that needs nothing else.")
+      .def("_repr_html_",
+           [](const JudgedEdges& self) {
+             return framed(graph_of(self).ids.size(), in_words(self.result.verdicts),
+                           [&self] { return page(self); });
+           })
       .def(
           "to_dataframe",
           [](const JudgedEdges& self) {
-            const nb::object verdicts = nb::cast(verdicts_of(self));
+            const nb::object verdicts = nb::cast(named_verdicts(self));
             return data_frame(columns(nb::cast<const Verdicts&>(verdicts), verdicts));
           },
           nb::sig("def to_dataframe(self) -> pandas.DataFrame"),

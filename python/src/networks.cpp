@@ -19,6 +19,7 @@
 #include "isotherm/network/simulate/simulate_network.hpp"
 #include "keywords.hpp"
 #include "modules.hpp"
+#include "pages.hpp"
 #include "verdicts.hpp"
 
 namespace isotherm::python {
@@ -148,7 +149,7 @@ bool number_ends(spectral::EdgeVerdicts& rows, const RangeNetwork& network) {
   return true;
 }
 
-Verdicts verdicts_of(const Localized& self) {
+Verdicts named_verdicts(const Localized& self) {
   Verdicts all{self.verdicts};
   if (!number_ends(all.rows, network_of(self))) {
     all.names = [names = network_of(self).names](std::uint64_t node) { return names[node]; };
@@ -206,6 +207,16 @@ nb::object node_frame(nb::handle_t<Localized> self) {
   }
   columns["status"] = node_states(result);
   return data_frame(columns);
+}
+
+std::string page(const Localized& self, nb::handle truth) {
+  const auto& network = network_of(self);
+  return page_of(network, network.report.path, self.options, self, truth);
+}
+
+std::string notebook_page(const Localized& self) {
+  return framed(network_of(self).names.size(), in_words(self.verdicts),
+                [&self] { return page(self, nb::none()); });
 }
 
 nb::tuple simulate(nb::kwargs given) {
@@ -287,7 +298,7 @@ void bind_result(nb::module_& module) {
       .def_prop_ro("covariances", covariances, nb::rv_policy::automatic,
                    "n x d x d; NaN without a position, 0 for anchors.")
       .def_prop_ro("states", node_states, "'anchor', 'localised', or why a node has no position.")
-      .def_prop_ro("verdicts", verdicts_of, "A decision for each range, in order.")
+      .def_prop_ro("verdicts", named_verdicts, "A decision for each range, in order.")
       .def_prop_ro(
           "status", [](const Localized& self) { return std::string(enum_name(self.status)); },
           "'converged', 'not-converged' or 'no-start'.")
@@ -301,6 +312,14 @@ void bind_result(nb::module_& module) {
       .def_ro("chi2", &LocalizeResult::chi2, "Of the kept ranges.")
       .def_ro("dof", &LocalizeResult::dof, "Kept ranges less unknowns.")
       .def_ro("seconds", &LocalizeResult::seconds, "Wall time.")
+      .def(
+          "report", [](const Localized& self, nb::handle truth) { return page(self, truth); },
+          "truth"_a = nb::none(),
+          nb::sig("def report(self, truth: numpy.typing.ArrayLike | None = None) -> str"),
+          "The page that explains the result, as HTML that needs nothing else; with the true "
+          "positions, "
+          "their errors, too.")
+      .def("_repr_html_", notebook_page)
       .def(
           "write",
           [](const Localized& self, nb::handle path) {

@@ -51,15 +51,15 @@ nb::dict counts(const Verdicts& verdicts) {
   return all;
 }
 
-std::string representation(const Verdicts& verdicts) {
-  std::string text = "Verdicts(" + std::to_string(verdicts.rows.size());
+}  // namespace
+
+std::string in_words(const spectral::EdgeVerdicts& rows) {
+  std::string text = "Verdicts(" + std::to_string(rows.size());
   for (const auto& [verdict, name] : enum_names(Verdict{})) {
-    text += ", " + std::to_string(count(verdicts.rows, verdict)) + " " + std::string(name);
+    text += ", " + std::to_string(count(rows, verdict)) + " " + std::string(name);
   }
   return text + ")";
 }
-
-}  // namespace
 
 nb::dict columns(const Verdicts& verdicts, nb::handle owner) {
   nb::dict all;
@@ -78,7 +78,7 @@ void bind_verdicts(nb::module_& module) {
                        "A decision for each candidate edge, with its reason: column by column, in "
                        "the order of the input.")
       .def("__len__", [](const Verdicts& self) { return self.rows.size(); })
-      .def("__repr__", representation)
+      .def("__repr__", [](const Verdicts& self) { return in_words(self.rows); })
       .def_prop_ro(
           "edge",
           [](const Verdicts& self) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <nanobind/nanobind.h>
@@ -25,7 +26,10 @@ View1<T> member_view(const std::vector<Row>& rows, T Row::*member, nb::handle ow
   return strided_view(&(first.*member), rows.size(), sizeof(Row), owner);
 }
 
-/// Those who ask find decisions of a method under the names of the columns of a verdict file.
+/// `Verdicts(3, 2 keep, 1 prune, 0 ambiguous)`.
+std::string in_words(const spectral::EdgeVerdicts& rows);
+
+/// The columns of a verdict file, by their names.
 nb::dict columns(const Verdicts& verdicts, nb::handle owner);
 
 }  // namespace isotherm::python

@@ -13,6 +13,8 @@ from pathlib import Path
 
 LAYERS = ["base", "spectral", "geometry", "network", "slam", "apps", "python"]
 MOST_FILES = 20
+# Layers whose headers another one includes by their path below the layer's folder.
+BESIDE = {"python": "apps"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 # A row of the document's table of rooms: | `folder` | `first`, `second`, `header.hpp`, ... |
 ROW = re.compile(r"^\| `([a-z_/]+)` \| ((?:`[a-z0-9_.]+`(?:, )?)+) \|$", re.MULTILINE)
@@ -80,6 +82,8 @@ def check_includes(root, layer, orders):
                 yield f"{path} includes {include}: by a relative path"
             if quote == '"' and not ours and not is_root_header(root, layer, include):
                 yield f"{path} includes {include}: not by its full path"
+            if layer in BESIDE and is_root_header(root, BESIDE[layer], include):
+                continue
             included = place_of(include, layer) if quote == '"' else None
             complaint = included and check_direction(layer, orders, place, included)
             if complaint:

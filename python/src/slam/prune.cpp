@@ -13,6 +13,7 @@
 #include "isotherm/base/error.hpp"
 #include "keywords.hpp"
 #include "modules.hpp"
+#include "pages.hpp"
 #include "slam/pose_graph.hpp"
 #include "slam/pruned.hpp"
 
@@ -77,6 +78,13 @@ PoseGraphFile without_false(const Pruned& self, bool keep_ambiguous) {
   return with_graph(file, apply_verdicts(file.graph, self.result.verdicts, keep_ambiguous));
 }
 
+std::string notebook_page(const Pruned& self) {
+  const auto& verdicts = self.result.verdicts;
+  const auto vertices =
+      std::visit([](const auto& graph) { return graph.ids.size(); }, graph_of(self).graph);
+  return framed(vertices, in_words(verdicts), [&self] { return page_of(self, nb::none()); });
+}
+
 nb::dict methods_of() {
   nb::dict all;
   for (const auto& method : slam::prune_methods()) {
@@ -131,6 +139,14 @@ void bind_prune(nb::module_& module) {
           "seconds", [](const Pruned& self) { return self.result.seconds; }, "Wall time.")
       .def_ro("graph", &Pruned::graph, nb::sig("def graph(self, /) -> PoseGraph"),
               "The graph that was judged.")
+      .def(
+          "report", [](const Pruned& self, nb::handle truth) { return page_of(self, truth); },
+          "truth"_a = nb::none(),
+          nb::sig("def report(self, truth: numpy.typing.ArrayLike | None = None) -> str"),
+          "The page that explains the result, as HTML that needs nothing else; with the true "
+          "poses, "
+          "their errors, too.")
+      .def("_repr_html_", notebook_page)
       .def("pruned", without_false, nb::kw_only(), "keep_ambiguous"_a = false,
            "The graph without the loops that are pruned and, unless keep_ambiguous, without those "
            "that are ambiguous. Poses are as they were: optimize() finds them.")

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include <nanobind/nanobind.h>
 
 #include "isotherm/slam/prune/prune.hpp"
@@ -23,5 +25,8 @@ inline const PoseGraphFile& graph_of(const Pruned& self) {
 inline Verdicts verdicts_of(const Pruned& self) {
   return {self.result.verdicts, names_of(graph_of(self).graph)};
 }
+
+/// The page that explains the result. `truth` holds a pose a vertex (NaN: not known), or is None.
+std::string page_of(const Pruned& pruned, nb::handle truth);
 
 }  // namespace isotherm::python
