@@ -19,6 +19,8 @@ Verb add_edges(CLI::App& root);
 Verb add_embed(CLI::App& root);
 Verb add_localize(CLI::App& root);
 Verb add_report(CLI::App& root);
+Verb add_completion(CLI::App& root);
+Verb add_manual(CLI::App& root);
 Verb add_eval(CLI::App& root);
 Verb add_eval_loops(CLI::App& eval);
 Verb add_eval_ate(CLI::App& eval);
