@@ -14,7 +14,8 @@ def from_dataframe(
 
     Args:
         frame: a DataFrame.
-        source, target: the columns that name the ends of an edge.
+        source: the column that names one end of an edge.
+        target: the column that names the other.
         weight: the column of weights; 1 each where there is none of that name.
     """
     ends = frame[[source, target]].to_numpy()
