@@ -66,8 +66,9 @@ class Rrr {
   // A switch falls below one half where a loop fails its test.
   std::vector<Pose> start() const {
     const Initialization method = start_of(options_);
-    return method == Initialization::switchable ? switchable_poses(graph_, roles_, loop_limit_)
-                                                : initial_poses(graph_, roles_, method);
+    return method == Initialization::switchable
+               ? switchable_poses(graph_, roles_, loop_limit_, run_.progress)
+               : initial_poses(graph_, roles_, method);
   }
 
   // Whether the start knows more than odometry. If not, it is chained anew for every
@@ -100,7 +101,8 @@ class Rrr {
     NormalEquations<Pose> equations(small);
     const EdgeCost least_squares = [](Index, double chi2) { return KernelValue{chi2, 1.0}; };
     minimize(equations, least_squares,
-             {OptimizeAlgorithm::gauss_newton, options_.rrr_iterations, 1e-4, {}}, poses);
+             {OptimizeAlgorithm::gauss_newton, options_.rrr_iterations, 1e-4, run_.progress},
+             poses);
     return equations.chi2(poses);
   }
 
