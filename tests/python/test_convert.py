@@ -19,6 +19,31 @@ def weighted():
     return spectral.Graph(edges, rng.uniform(0.5, 2, len(edges)), vertex_count=31)
 
 
+def test_extras_are_called_as_messages_say(monkeypatch):
+    import sys
+    import tomllib
+
+    from conftest import ROOT
+    from isotherm import plot
+
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    graph = spectral.Graph([[0, 1]], points=[[0.0, 0.0], [1.0, 1.0]])
+    calls = {
+        "scipy.sparse": lambda: convert.to_scipy(graph),
+        "networkx": lambda: convert.to_networkx(graph),
+        "gtsam": lambda: convert.to_gtsam(slam.PoseGraph([[0, 1]], [[1, 0, 0]])),
+        "evo.core.trajectory": lambda: convert.to_evo([[0, 0, 0]]),
+        "matplotlib.pyplot": lambda: plot.graph(graph),
+        "pandas": graph.to_dataframe,
+    }
+    for module, call in calls.items():
+        package = module.partition(".")[0]
+        monkeypatch.setitem(sys.modules, module, None)
+        with pytest.raises(ImportError, match=rf"pip install 'isotherm\[{package}\]'"):
+            call()
+        assert package in extras
+
+
 class TestScipy:
     sparse = pytest.importorskip("scipy.sparse")
 
