@@ -64,11 +64,8 @@ JudgedEdges judge(nb::handle_t<Graph> graph, nb::kwargs given) {
   return judged;
 }
 
-}  // namespace
-
-void bind_edges(nb::module_& module) {
-  nb::class_<JudgedEdges>(module, "JudgedEdges", "Which edges of a graph do not belong there.")
-      .def_prop_ro("verdicts", named_verdicts, "A decision for each edge, in order.")
+void bind_result(nb::class_<JudgedEdges>& bound) {
+  bound.def_prop_ro("verdicts", named_verdicts, "A decision for each edge, in order.")
       .def_ro("graph", &JudgedEdges::graph, nb::sig("def graph(self, /) -> Graph"),
               "The graph that was judged.")
       .def_prop_ro(
@@ -98,6 +95,14 @@ void bind_edges(nb::module_& module) {
           },
           nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
           "The verdicts, as a table of pandas.");
+}
+
+}  // namespace
+
+void bind_edges(nb::module_& module) {
+  nb::class_<JudgedEdges> bound(module, "JudgedEdges",
+                                "Which edges of a graph do not belong there.");
+  bind_result(bound);
 
   const KeywordText trusted = {"trusted", "numpy.typing.ArrayLike | None", "None",
                                "heat-multiscale: positions of edges that are known to be true"};

@@ -166,11 +166,8 @@ nb::tuple laplacian(const Graph& graph, const std::string& kind) {
                    sizeof(Index), owner));
 }
 
-void bind_class(nb::module_& module) {
-  nb::class_<Graph>(module, "Graph",
-                    "A weighted graph: undirected edges, each with an affinity above 0. Vertices "
-                    "are numbered from 0; `ids` are the numbers that a file gave them. A graph "
-                    "never changes, and its arrays are views that cannot be written.")
+void bind_making(nb::class_<Graph>& bound) {
+  bound
       .def(
           "__init__",
           [](Graph* self, nb::handle edges, nb::handle weights, nb::handle vertex_count,
@@ -190,8 +187,11 @@ void bind_class(nb::module_& module) {
                           "numpy.typing.ArrayLike, data: numpy.typing.ArrayLike, *, points: "
                           "numpy.typing.ArrayLike | None = None) -> Graph"),
                   "The graph of a symmetric matrix of weights in compressed rows, with columns in "
-                  "order. int32 and float64 are read where they are. The diagonal is left out.")
-      .def("__len__", [](const Graph& self) { return self.graph.vertex_count(); })
+                  "order. int32 and float64 are read where they are. The diagonal is left out.");
+}
+
+void bind_contents(nb::class_<Graph>& bound) {
+  bound.def("__len__", [](const Graph& self) { return self.graph.vertex_count(); })
       .def("__repr__",
            [](const Graph& self) {
              return "Graph(" + std::to_string(self.graph.vertex_count()) + " vertices, " +
@@ -222,6 +222,16 @@ void bind_class(nb::module_& module) {
           "What was noticed in the file that the graph was read from.")
       .def("to_dataframe", edge_frame, nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
            "from, to and weight of each edge, as a table of pandas.");
+}
+
+void bind_class(nb::module_& module) {
+  nb::class_<Graph> bound(
+      module, "Graph",
+      "A weighted graph: undirected edges, each with an affinity above 0. Vertices "
+      "are numbered from 0; `ids` are the numbers that a file gave them. A graph "
+      "never changes, and its arrays are views that cannot be written.");
+  bind_making(bound);
+  bind_contents(bound);
 }
 
 void bind_files(nb::module_& module) {

@@ -233,10 +233,8 @@ nb::tuple simulate(nb::kwargs given) {
                         give(std::move(origins)));
 }
 
-void bind_network(nb::module_& module) {
-  nb::class_<Network>(module, "Network",
-                      "Nodes of a sensor network and the ranges measured between them. Nodes are "
-                      "numbered from 0; a network never changes.")
+void bind_making(nb::class_<Network>& bound) {
+  bound
       .def(
           "__init__",
           [](Network* self, nb::handle edges, nb::handle ranges, nb::handle sigmas,
@@ -252,7 +250,11 @@ void bind_network(nb::module_& module) {
       .def("with_anchors", with_anchors, "names"_a, "positions"_a,
            nb::sig("def with_anchors(self, names: collections.abc.Iterable[object], positions: "
                    "numpy.typing.ArrayLike) -> Network"),
-           "The network with these nodes, and no others, at known positions (k x d).")
+           "The network with these nodes, and no others, at known positions (k x d).");
+}
+
+void bind_contents(nb::class_<Network>& bound) {
+  bound
       .def("__repr__",
            [](const Network& self) {
              return "Network(" + std::to_string(self.names.size()) + " nodes, " +
@@ -287,6 +289,15 @@ void bind_network(nb::module_& module) {
           "What was noticed in the file that the network was read from.")
       .def("to_dataframe", range_frame, nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
            "from, to, range and variance, as a table of pandas.");
+}
+
+void bind_network(nb::module_& module) {
+  nb::class_<Network> bound(
+      module, "Network",
+      "Nodes of a sensor network and the ranges measured between them. Nodes are "
+      "numbered from 0; a network never changes.");
+  bind_making(bound);
+  bind_contents(bound);
 }
 
 void bind_result(nb::module_& module) {

@@ -98,7 +98,7 @@ ResistanceResult resistances(const Graph& graph, nb::handle pairs, nb::kwargs gi
   });
 }
 
-void bind_results(nb::module_& module) {
+void bind_eigenpairs(nb::module_& module) {
   nb::class_<EigenDecomposition>(module, "Eigenpairs",
                                  "The smallest eigenpairs of a Laplacian, ascending.")
       .def_prop_ro(
@@ -123,7 +123,9 @@ void bind_results(nb::module_& module) {
           "converged",
           [](const EigenDecomposition& self) { return self.status == EigenStatus::converged; },
           "Whether all pairs are there, as exact as asked for.");
+}
 
+void bind_embedding(nb::module_& module) {
   nb::class_<Coordinates>(module, "Embedding", "Coordinates for the vertices of a graph.")
       .def_prop_ro(
           "coordinates", [](const Coordinates& self) { return view(self.rows, nb::find(self)); },
@@ -137,7 +139,9 @@ void bind_results(nb::module_& module) {
           "The number that the input gives to each vertex, n.")
       .def("to_dataframe", coordinate_frame, nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
            "vertex, x0, x1 and so on, as a table of pandas.");
+}
 
+void bind_heat_distances(nb::module_& module) {
   nb::class_<HeatDistanceResult>(
       module, "HeatDistances",
       "Squared heat distances of pairs (rows) at scales (columns), each known to lie between its "
@@ -161,7 +165,9 @@ void bind_results(nb::module_& module) {
       .def_prop_ro("converged", &HeatDistanceResult::converged,
                    "Whether all brackets are as narrow as asked for.")
       .def_ro("seconds", &HeatDistanceResult::seconds, "Wall time.");
+}
 
+void bind_resistances(nb::module_& module) {
   nb::class_<ResistanceResult>(module, "Resistances", "Effective resistances of pairs.")
       .def_prop_ro(
           "values", [](const ResistanceResult& self) { return view(self.values, nb::find(self)); },
@@ -178,7 +184,10 @@ void bind_results(nb::module_& module) {
 }  // namespace
 
 void bind_spectra(nb::module_& module) {
-  bind_results(module);
+  bind_eigenpairs(module);
+  bind_embedding(module);
+  bind_heat_distances(module);
+  bind_resistances(module);
   const auto run = run_keywords(RunTexts::threads);
   define(module, "embed", "graph: Graph", keywords_of(EmbedOptions()) + run, "Embedding",
          "Give the vertices of a graph coordinates, from the smallest eigenpairs of its "

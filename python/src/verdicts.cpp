@@ -51,33 +51,8 @@ nb::dict counts(const Verdicts& verdicts) {
   return all;
 }
 
-}  // namespace
-
-std::string in_words(const spectral::EdgeVerdicts& rows) {
-  std::string text = "Verdicts(" + std::to_string(rows.size());
-  for (const auto& [verdict, name] : enum_names(Verdict{})) {
-    text += ", " + std::to_string(count(rows, verdict)) + " " + std::string(name);
-  }
-  return text + ")";
-}
-
-nb::dict columns(const Verdicts& verdicts, nb::handle owner) {
-  nb::dict all;
-  all["edge"] = member_view(verdicts.rows, &EdgeVerdict::edge, owner);
-  all["from"] = member_view(verdicts.rows, &EdgeVerdict::from, owner);
-  all["to"] = member_view(verdicts.rows, &EdgeVerdict::to, owner);
-  all["verdict"] = texts(verdicts);
-  all["score"] = member_view(verdicts.rows, &EdgeVerdict::score, owner);
-  all["threshold"] = member_view(verdicts.rows, &EdgeVerdict::threshold, owner);
-  all["stage"] = stages(verdicts);
-  return all;
-}
-
-void bind_verdicts(nb::module_& module) {
-  nb::class_<Verdicts>(module, "Verdicts",
-                       "A decision for each candidate edge, with its reason: column by column, in "
-                       "the order of the input.")
-      .def("__len__", [](const Verdicts& self) { return self.rows.size(); })
+void bind_decisions(nb::class_<Verdicts>& bound) {
+  bound.def("__len__", [](const Verdicts& self) { return self.rows.size(); })
       .def("__repr__", [](const Verdicts& self) { return in_words(self.rows); })
       .def_prop_ro(
           "edge",
@@ -97,7 +72,11 @@ void bind_verdicts(nb::module_& module) {
           nb::rv_policy::automatic, "Which are pruned.")
       .def_prop_ro(
           "ambiguous", [](const Verdicts& self) { return mask(self, Verdict::ambiguous); },
-          nb::rv_policy::automatic, "Which are proven neither way.")
+          nb::rv_policy::automatic, "Which are proven neither way.");
+}
+
+void bind_reasons(nb::class_<Verdicts>& bound) {
+  bound
       .def_prop_ro(
           "score",
           [](const Verdicts& self) {
@@ -127,6 +106,37 @@ void bind_verdicts(nb::module_& module) {
           },
           nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
           "The columns of the verdict file, as a table of pandas.");
+}
+
+}  // namespace
+
+std::string in_words(const spectral::EdgeVerdicts& rows) {
+  std::string text = "Verdicts(" + std::to_string(rows.size());
+  for (const auto& [verdict, name] : enum_names(Verdict{})) {
+    text += ", " + std::to_string(count(rows, verdict)) + " " + std::string(name);
+  }
+  return text + ")";
+}
+
+nb::dict columns(const Verdicts& verdicts, nb::handle owner) {
+  nb::dict all;
+  all["edge"] = member_view(verdicts.rows, &EdgeVerdict::edge, owner);
+  all["from"] = member_view(verdicts.rows, &EdgeVerdict::from, owner);
+  all["to"] = member_view(verdicts.rows, &EdgeVerdict::to, owner);
+  all["verdict"] = texts(verdicts);
+  all["score"] = member_view(verdicts.rows, &EdgeVerdict::score, owner);
+  all["threshold"] = member_view(verdicts.rows, &EdgeVerdict::threshold, owner);
+  all["stage"] = stages(verdicts);
+  return all;
+}
+
+void bind_verdicts(nb::module_& module) {
+  nb::class_<Verdicts> bound(
+      module, "Verdicts",
+      "A decision for each candidate edge, with its reason: column by column, in "
+      "the order of the input.");
+  bind_decisions(bound);
+  bind_reasons(bound);
 
   module.def(
       "read_verdicts",

@@ -296,7 +296,7 @@ void bind_making(nb::class_<PoseGraphFile>& bound) {
       "The same graph with other poses, n x 3 or n x 7, or without any.");
 }
 
-void bind_arrays(nb::class_<PoseGraphFile>& bound) {
+void bind_vertices(nb::class_<PoseGraphFile>& bound) {
   bound
       .def_prop_ro(
           "ids",
@@ -308,6 +308,17 @@ void bind_arrays(nb::class_<PoseGraphFile>& bound) {
       .def_prop_ro("poses", poses_of, nb::rv_policy::automatic,
                    nb::sig("def poses(self) -> numpy.typing.NDArray[numpy.float64] | None"),
                    "n x 3 (x, y, theta) or n x 7 (x, y, z, qx, qy, qz, qw), if they are known.")
+      .def_prop_ro(
+          "fixed",
+          [](const PoseGraphFile& self) {
+            const auto owner = nb::find(self);
+            return visit(self, [&](const auto& graph) { return view(graph.fixed, owner); });
+          },
+          "Vertices that are held.");
+}
+
+void bind_constraints(nb::class_<PoseGraphFile>& bound) {
+  bound
       .def_prop_ro(
           "edges",
           [](const PoseGraphFile& self) {
@@ -344,14 +355,7 @@ void bind_arrays(nb::class_<PoseGraphFile>& bound) {
               return member_view(graph.constraints, &One::line, owner);
             });
           },
-          "The line of each edge in its file; 0: none, m.")
-      .def_prop_ro(
-          "fixed",
-          [](const PoseGraphFile& self) {
-            const auto owner = nb::find(self);
-            return visit(self, [&](const auto& graph) { return view(graph.fixed, owner); });
-          },
-          "Vertices that are held.");
+          "The line of each edge in its file; 0: none, m.");
 }
 
 void bind_facts(nb::class_<PoseGraphFile>& bound) {
@@ -435,7 +439,8 @@ void bind_pose_graphs(nb::module_& module) {
       "order of their ids, edges in that of the file. A graph never changes, and its arrays "
       "cannot be written.");
   bind_making(bound);
-  bind_arrays(bound);
+  bind_vertices(bound);
+  bind_constraints(bound);
   bind_facts(bound);
 
   const std::string path = "path: str | os.PathLike[str]";

@@ -124,11 +124,8 @@ std::string method_type() {
   return "typing.Literal[" + joined(names) + "]";
 }
 
-}  // namespace
-
-void bind_prune(nb::module_& module) {
-  nb::class_<Pruned>(module, "PruneResult", "What was decided about the loops of a pose graph.")
-      .def_prop_ro("verdicts", verdicts_of, "A decision for each candidate, in file order.")
+void bind_result(nb::class_<Pruned>& bound) {
+  bound.def_prop_ro("verdicts", verdicts_of, "A decision for each candidate, in file order.")
       .def_prop_ro(
           "method", [](const Pruned& self) { return self.result.method; },
           "Name of the method that decided.")
@@ -158,6 +155,14 @@ void bind_prune(nb::module_& module) {
           },
           nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
           "The verdicts, as a table of pandas.");
+}
+
+}  // namespace
+
+void bind_prune(nb::module_& module) {
+  nb::class_<Pruned> bound(module, "PruneResult",
+                           "What was decided about the loops of a pose graph.");
+  bind_result(bound);
 
   module.def("prune_methods", methods_of,
              nb::sig("def prune_methods() -> dict[str, dict[str, str]]"),
