@@ -10,7 +10,11 @@ test('the table sorts by probability', async () => {
   const { page } = suite;
   const head = '.head .col-probability';
   const shown = async () => {
-    await page.$eval('.grid', (grid) => grid.scrollTo(0, 0));
+    // Rows come into sight with the frame after the one that scrolls.
+    await page.$eval('.grid', (grid) => new Promise((done) => {
+      grid.scrollTo(0, 0);
+      requestAnimationFrame(() => requestAnimationFrame(done));
+    }));
     const cells = await page.$$eval('.rows .col-probability', (all) => all.map((c) => c.textContent));
     return cells.slice(0, 10).map((text) => Number(text.replaceAll('−', '-')));
   };
