@@ -73,6 +73,7 @@ Json to_json(const EvidenceResult& result, const spectral::EdgeVerdicts& verdict
   Json json = {{"log_evidence", finite_or_null(result.log_evidence)},
                {"odometry_scale", result.odometry_scale},
                {"loop_scale", result.loop_scale},
+               {"rotation_scale", result.rotation_scale},
                {"share_as_stated", result.share_as_stated},
                {"settled", result.settled},
                {"loops", Json::array()}};

@@ -19,25 +19,26 @@ namespace {
 using detail::Explanation;
 using spectral::Verdict;
 
-// Factors on the stated covariances of odometry and of loops to start from: one climb cannot leave
-// a sharp scale that explains a few loops and refutes the rest, nor a wide one.
-const std::array<detail::CovarianceScale, 6> kStarts = {
-    {{1.0, 1.0}, {100.0, 1.0}, {0.01, 0.01}, {1.0, 0.01}, {100.0, 100.0}, {1.0, 100.0}}};
+// Factors on the stated covariances of odometry and of loops to start from. What is true agrees
+// best: a climb that starts from sharper loops than stated is not drawn to false ones first.
+const std::array<detail::CovarianceScale, 3> kStarts = {{{1.0, 1.0}, {1.0, 0.01}, {0.01, 0.01}}};
 constexpr double kNegligible = -20.0;  // log weight of an explanation
 
-// What the climbs found, the best first. Of one that keeps every loop nothing is left to explain
-// otherwise. Scales at which the normal equations break down explain nothing.
+// Fewer loops say too little of how accurate odometry is for one of them to be pruned.
+constexpr std::size_t kFewLoops = 5;
+
+// Nothing accepted, and what the climbs found; the best first. Scales at which the normal equations
+// break down explain nothing.
 template <class Pose>
 std::vector<Explanation<Pose>> explanations(detail::Climb<Pose>& climb, bool calibrate) {
-  std::vector<Explanation<Pose>> found;
+  std::vector<Explanation<Pose>> found = {climb.nothing()};
   for (const auto& start : kStarts) {
     try {
       found.push_back(climb.from(start));
     } catch (const NumericalError&) {
-      if (found.empty() && &start == &kStarts.back()) throw;
       continue;
     }
-    if (!calibrate || std::ranges::count(found.back().accepted, false) == 0) break;
+    if (!calibrate) break;
   }
   std::ranges::stable_sort(found, std::greater{}, &Explanation<Pose>::evidence);
   return found;
@@ -79,9 +80,9 @@ std::vector<double> mean_log_odds(detail::Climb<Pose>& climb,
   return log_true;
 }
 
-Verdict verdict_of(bool accepted, double log_odds, double decisive) {
+Verdict verdict_of(bool accepted, double log_odds, double decisive, bool few) {
   if (accepted && log_odds > decisive) return Verdict::keep;
-  return log_odds < -decisive ? Verdict::prune : Verdict::ambiguous;
+  return log_odds < -decisive && !few ? Verdict::prune : Verdict::ambiguous;
 }
 
 std::string stage_of(bool accepted, const detail::Standing& standing) {
@@ -96,11 +97,12 @@ void report(detail::Climb<Pose>& climb, const std::vector<Explanation<Pose>>& fo
   std::vector<detail::Standing> standings;
   const auto log_odds = mean_log_odds(climb, found, standings);
   const double decisive = detail::log_odds_of(1.0 - significance);
+  const bool few = standings.size() < kFewLoops;
   for (std::size_t k = 0; k < standings.size(); ++k) {
     auto& verdict = result.verdicts[k];
     verdict.score = -log_odds[k];
     verdict.threshold = decisive;
-    verdict.verdict = verdict_of(best.accepted[k], log_odds[k], decisive);
+    verdict.verdict = verdict_of(best.accepted[k], log_odds[k], decisive, few);
     verdict.stage = stage_of(best.accepted[k], standings[k]);
     result.details.push_back({.probability = 1.0 / (1.0 + std::exp(-log_odds[k])),
                               .log_ratio = standings[k].evidence,
@@ -109,6 +111,7 @@ void report(detail::Climb<Pose>& climb, const std::vector<Explanation<Pose>>& fo
   }
   result.odometry_scale = best.scale.odometry;
   result.loop_scale = best.scale.loops;
+  result.rotation_scale = best.rotation;
   result.share_as_stated =
       std::exp(detail::expected_mixture(best.scale.loops, best.shares).log_share.back());
   result.log_evidence = best.evidence;
@@ -125,8 +128,7 @@ EvidenceResult judge_by_evidence(const PoseGraph<Pose>& graph, const EdgeRoles& 
   EvidenceResult result;
   result.verdicts = candidate_verdicts(graph, roles);
   if (roles.candidates.empty()) return result;
-  const auto reduced = detail::reduce(graph, roles);
-  const detail::Objective<Pose> objective(reduced, options.window);
+  const detail::Objective<Pose> objective(graph, roles, options.window, options.calibrate);
   detail::Climb<Pose> climb(objective, options, run.progress);
   const auto found = explanations(climb, options.calibrate);
   result.moves = climb.moves();

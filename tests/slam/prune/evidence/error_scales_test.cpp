@@ -80,6 +80,36 @@ TYPED_TEST(LoopGainOf, IsTheLogDensityOfTheMixture) {
   }
 }
 
+// Against the same integral over fine steps of both logs, far out.
+TYPED_TEST(LoopGainOf, IntegratesOverScalesThatAreNotKnown) {
+  using Pose = TypeParam;
+  using Matrix = typename Pose::Matrix;
+  const typename Pose::Tangent r = Pose::Tangent::Constant(0.4);
+  const Matrix C = 0.01 * Matrix::Identity();
+  const Matrix Sigma = 0.02 * Matrix::Identity();
+  const auto mixture = expected_mixture(0.5, {{3.0, 1.0}});
+  const auto prediction = predict<Pose>(r, C, Sigma);
+  const CovarianceScale deviation = {1.2, 0.8};
+  constexpr double kStep = 0.1;
+  double sum = 0.0;
+  double all = 0.0;
+  for (double x = -6.0; x < 6.0; x += kStep) {
+    for (double y = -6.0; y < 6.0; y += kStep) {
+      const double weight = std::exp(-0.5 * (x * x + y * y));
+      all += weight;
+      const Matrix J = residual_jacobian<Pose>(r);
+      const Matrix known = std::exp(deviation.odometry * x) * J * C * J.transpose();
+      for (std::size_t j = 0; j < kScaleCount; ++j) {
+        const double own = j == 0 ? 0.5 * std::exp(deviation.loops * y) : 1.0;
+        const Matrix S = known + own * Sigma;
+        sum += weight * std::exp(mixture.log_share[j] + log_normal<Pose>(r, S));
+      }
+    }
+  }
+  EXPECT_NEAR(loop_gain<Pose>(prediction, mixture, deviation).log_density, std::log(sum / all),
+              0.05);
+}
+
 // By matrices: the information of the loop is taken away from that of all.
 TYPED_TEST(LoopGainOf, TakesTheLoopOutOfWhatAllSay) {
   using Pose = TypeParam;

@@ -73,6 +73,36 @@ TEST(Evidence, LearnsHowAccurateLoopsAre) {
   EXPECT_NEAR(result.odometry_scale, 1.0, 0.3);
 }
 
+// As files do that state all by the same number.
+TYPED_TEST(EvidenceOf, LearnsRotationAgainstTranslation) {
+  using Pose = TypeParam;
+  Random random(36);
+  auto made = random_loop_graph<Pose>(random, 200, 150, 1.0);
+  const auto stated = made.graph;
+  typename Pose::Tangent root = Pose::Tangent::Ones();
+  root.template tail<Pose::kDof - Pose::kDim>().setConstant(10.0);
+  for (auto& constraint : made.graph.constraints) {
+    constraint.information = root.asDiagonal() * constraint.information * root.asDiagonal();
+  }
+  const auto roles = edge_roles(made.graph);
+  const auto as_stated = judge_by_evidence(stated, roles);
+  const auto result = judge_by_evidence(made.graph, roles);
+  EXPECT_NEAR(std::log(result.rotation_scale / as_stated.rotation_scale), std::log(100.0), 1.0);
+  EXPECT_EQ(count(result.verdicts, Verdict::prune), 0);
+}
+
+// Whether odometry or they are wrong nobody knows.
+TEST(Evidence, PrunesNoneOfAFewLoops) {
+  Random random(37);
+  auto made = random_loop_graph<Pose2>(random, 200, 4, 1.0);
+  for (const Index k : edge_roles(made.graph).odometry) {
+    made.graph.constraints[k].T_from_to =
+        made.graph.constraints[k].T_from_to * Pose2(0.0, 0.0, 0.05);
+  }
+  const auto result = judge_by_evidence(made.graph, edge_roles(made.graph));
+  EXPECT_EQ(count(result.verdicts, Verdict::prune), 0);
+}
+
 TEST(Evidence, GivesTheSameResultWhateverTheOrderOfTheFile) {
   const auto city = simulate_city({.poses = 400, .measurements = {.loops = 120}, .seed = 5});
   const auto bad = corrupt(city.graph, city.truth, {.count = 100, .seed = 5});

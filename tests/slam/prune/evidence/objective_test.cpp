@@ -72,15 +72,17 @@ double evidence_of(const Objective<Pose>& objective, Estimate<Pose>& estimate,
                    Explanation<Pose>& explanation) {
   estimate.weigh_loops(explanation.weights);
   estimate.update(explanation.accepted, explanation.scale, 10);
-  return objective.evidence(explanation, estimate, objective.near(estimate.poses()));
+  return objective.evidence(explanation, objective.stated(), estimate,
+                            objective.near(estimate.poses()));
 }
 
 TYPED_TEST(ObjectiveOf, IsTheMarginalLikelihoodOfTheLoops) {
   using Pose = TypeParam;
   Random random(7);
   const auto made = random_loop_graph<Pose>(random, 15, 6, 1.0, 1e6);
-  const auto reduced = reduce(made.graph, edge_roles(made.graph));
-  const Objective<Pose> objective(reduced, 20);
+  const auto roles = edge_roles(made.graph);
+  const Objective<Pose> objective(made.graph, roles, 20);
+  const auto& reduced = objective.stated().reduced;
   const std::size_t loops = reduced.loops.size();
   for (const CovarianceScale scale : {CovarianceScale{1.0, 1.0}, CovarianceScale{3.0, 0.2}}) {
     Estimate<Pose> estimate(reduced);
@@ -93,7 +95,7 @@ TYPED_TEST(ObjectiveOf, IsTheMarginalLikelihoodOfTheLoops) {
     const auto near = objective.near(estimate.poses());
     double alternatives = 0.0;
     for (std::size_t k = 0; k < loops; ++k) {
-      alternatives += objective.log_alternative(static_cast<Index>(k), near, scale.loops);
+      alternatives += objective.log_alternative(static_cast<Index>(k), near, scale.loops, 1.0);
     }
     // No loop and every loop are equally likely by the Beta-binomial.
     EXPECT_NEAR(with - without + alternatives, dense_log_likelihood(reduced, scale), 0.05);
@@ -104,8 +106,9 @@ TYPED_TEST(ObjectiveOf, RisesByWhatALoopGains) {
   using Pose = TypeParam;
   Random random(8);
   const auto made = random_loop_graph<Pose>(random, 15, 6, 1.0, 1e6);
-  const auto reduced = reduce(made.graph, edge_roles(made.graph));
-  const Objective<Pose> objective(reduced, 20);
+  const auto roles = edge_roles(made.graph);
+  const Objective<Pose> objective(made.graph, roles, 20);
+  const auto& reduced = objective.stated().reduced;
   const std::size_t loops = reduced.loops.size();
   Explanation<Pose> all{.accepted = std::vector<bool>(loops, true)};
   all.weights.assign(loops, 1.0);
@@ -128,8 +131,36 @@ TYPED_TEST(ObjectiveOf, RisesByWhatALoopGains) {
   const auto near = objective.near(estimate.poses());
   // All of n against a given n - 1 of n by the Beta-binomial: n to 1.
   const double prior = std::log(static_cast<double>(loops));
-  EXPECT_NEAR(with - without, gain - objective.log_alternative(0, near, 1.0) + prior, 0.3)
+  EXPECT_NEAR(with - without, gain - objective.log_alternative(0, near, 1.0, 1.0) + prior, 0.3)
       << "chance on the map with the loop, and on the one without";
+}
+
+// Covariances of rotation and translation come apart by the ratio, in every edge, and determinants
+// stay. That of a chain's normal equations is the product of its steps', whose Jacobians have
+// unit determinant.
+TYPED_TEST(ObjectiveOf, ScalesRotationAgainstTranslation) {
+  using Pose = TypeParam;
+  constexpr int kDim = Pose::kDim;
+  constexpr int kTurns = Pose::kDof - kDim;
+  Random random(10);
+  const auto made = random_loop_graph<Pose>(random, 30, 10, 1.0);
+  const auto roles = edge_roles(made.graph);
+  const auto stated = scaled_graph(made.graph, roles, 1.0);
+  const auto scaled = scaled_graph(made.graph, roles, 7.0);
+  double steps = 0.0;
+  for (const auto& step : scaled.reduced.steps) steps += std::log(step.information.determinant());
+  EXPECT_NEAR(scaled.log_determinant, steps, 1e-6 * std::abs(steps));
+  EXPECT_EQ(scaled.variables, stated.variables);
+  for (std::size_t k = 0; k < stated.reduced.loops.size(); ++k) {
+    const auto& before = stated.reduced.loops[k].covariance;
+    const auto& after = scaled.reduced.loops[k].covariance;
+    const double translation = after.template topLeftCorner<kDim, kDim>().trace() /
+                               before.template topLeftCorner<kDim, kDim>().trace();
+    const double rotation = after.template bottomRightCorner<kTurns, kTurns>().trace() /
+                            before.template bottomRightCorner<kTurns, kTurns>().trace();
+    EXPECT_NEAR(rotation / translation, 7.0, 1e-9);
+    EXPECT_NEAR(after.determinant() / before.determinant(), 1.0, 1e-9);
+  }
 }
 
 // A loop of a graph that shrinks to a point is near everything.

@@ -23,7 +23,7 @@ struct EvidenceOptions {
   static std::string_view title() { return "The highest evidence"; }
 
   /// A loop is pruned if it is true with a probability below this one, and kept if it is false
-  /// with a probability below it; in (0, 0.5).
+  /// with a probability below it; in (0, 0.5). Of fewer than five loops none is pruned.
   double significance = 0.01;
   /// Loops whose ends lie within this many vertices of each other, at both ends, can be one
   /// run, which is accepted as a whole; > 0.
@@ -72,6 +72,7 @@ struct EvidenceResult {
   double log_evidence = 0.0;            ///< of the verdicts; nats, up to a constant of the graph
   double odometry_scale = 1.0;          ///< factor on the covariances of odometry, as learnt
   double loop_scale = 1.0;              ///< the same of most loops
+  double rotation_scale = 1.0;          ///< factor on covariances of rotation against translation's
   /// Of the loops, those that are as accurate as the file states and not as most turn out to be.
   double share_as_stated = 0.0;
   bool settled = true;  ///< false: max_rounds ended a climb

@@ -19,11 +19,11 @@ constexpr int kFixedPointSteps = 30;
 template <class Pose>
 Assessment<Pose>::Assessment(const Objective<Pose>& objective)
     : objective_(objective),
-      graph_(objective.graph()),
-      estimate_(graph_),
+      graph_(objective.stated()),
+      estimate_(graph_.reduced),
       odometry_(estimate_.layout()),
-      standings_(graph_.loops.size()),
-      covariances_(graph_.loops.size()) {}
+      standings_(graph_.reduced.loops.size()),
+      covariances_(graph_.reduced.loops.size()) {}
 
 template <class Pose>
 void Assessment<Pose>::start_over() {
@@ -39,6 +39,7 @@ void Assessment<Pose>::restore(const Explanation<Pose>& before) {
 
 template <class Pose>
 void Assessment<Pose>::assess(Explanation<Pose>& now) {
+  rescale(now.rotation);
   mixture_ = expected_mixture(now.scale.loops, now.shares);
   find_peak(now);
   near_ = objective_.near(estimate_.poses());
@@ -46,7 +47,16 @@ void Assessment<Pose>::assess(Explanation<Pose>& now) {
   weigh(now);
   add_prior(now.accepted);
   now.layout = estimate_.layout();
-  now.evidence = objective_.evidence(now, estimate_, near_);
+  now.evidence = objective_.evidence(now, graph_, estimate_, near_);
+}
+
+template <class Pose>
+void Assessment<Pose>::rescale(double rotation) {
+  if (rotation == rotation_) return;
+  graph_ = objective_.scaled(rotation);
+  rotation_ = rotation;
+  estimate_.restore(estimate_.layout());
+  held_.clear();
 }
 
 template <class Pose>
@@ -61,7 +71,7 @@ template <class Pose>
 void Assessment<Pose>::weigh_new(Explanation<Pose>& now) {
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
     if (!now.accepted[k] || held_.empty() || held_[k]) continue;
-    const auto& link = graph_.loops[k];
+    const auto& link = graph_.reduced.loops[k];
     const auto prediction =
         predict<Pose>(estimate_.residual(link), covariances_[k], link.covariance);
     now.weights[k] = loop_gain<Pose>(prediction, mixture_).weight;
@@ -76,7 +86,7 @@ bool Assessment<Pose>::reweigh(Explanation<Pose>& now) {
   now.scale_evidence = 0.0;
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
     if (!now.accepted[k]) continue;
-    const auto& link = graph_.loops[k];
+    const auto& link = graph_.reduced.loops[k];
     const typename Pose::Tangent r = estimate_.residual(link);
     const double chi2 =
         r.dot(link.information * r) / now.scale.loops + uncertainty(now, static_cast<Index>(k));
@@ -94,7 +104,7 @@ bool Assessment<Pose>::reweigh(Explanation<Pose>& now) {
 // deviations. As of the last assessment; of a loop accepted since, from what the others said.
 template <class Pose>
 double Assessment<Pose>::uncertainty(const Explanation<Pose>& now, Index loop) const {
-  const auto& link = graph_.loops[loop];
+  const auto& link = graph_.reduced.loops[loop];
   const auto J = residual_jacobian<Pose>(estimate_.residual(link));
   const Matrix P = J * covariances_[loop] * J.transpose();
   if (!held_.empty() && held_[loop]) return (link.information * P).trace() / now.scale.loops;
@@ -112,7 +122,7 @@ void Assessment<Pose>::bound(const Explanation<Pose>& now) {
     still = now.accepted[k] || !held_[k];
   }
   for (std::size_t k = 0; !still && k < covariances_.size(); ++k) {
-    covariances_[k] = graph_.odometry_covariance[k] * now.scale.odometry;
+    covariances_[k] = graph_.reduced.odometry_covariance[k] * now.scale.odometry;
   }
   held_ = now.accepted;
   held_scale_ = now.scale.odometry;
@@ -120,44 +130,73 @@ void Assessment<Pose>::bound(const Explanation<Pose>& now) {
 
 // Of those that are hopeless even by their bound the covariance is not solved for.
 template <class Pose>
-void Assessment<Pose>::weigh(const Explanation<Pose>& now) {
+void Assessment<Pose>::weigh(Explanation<Pose>& now) {
   std::vector<Index> loops;
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
     const auto loop = static_cast<Index>(k);
-    if (!now.accepted[k]) standings_[k] = other_standing(loop);
+    if (!now.accepted[k]) standings_[k] = other_standing(now, loop);
     const bool hopeful = standings_[k].connected && standings_[k].evidence > -kHopeless;
     if (now.accepted[k] || hopeful) loops.push_back(loop);
   }
   const auto covariances = estimate_.relative_covariances(loops);
-  for (std::size_t i = 0; i < loops.size(); ++i) {
-    const Index k = loops[i];
-    covariances_[k] = covariances[i];
-    standings_[k] = now.accepted[k] ? accepted_standing(k, now.weights[k] / now.scale.loops)
-                                    : other_standing(k);
+  for (std::size_t i = 0; i < loops.size(); ++i) covariances_[loops[i]] = covariances[i];
+  find_redundancy(now);
+  for (const Index k : loops) {
+    standings_[k] = now.accepted[k] ? accepted_standing(now, k) : other_standing(now, k);
   }
 }
 
-// Given all loops but itself.
 template <class Pose>
-Standing Assessment<Pose>::accepted_standing(Index loop, double precision) const {
-  const auto& link = graph_.loops[loop];
-  const auto prediction = predict_without<Pose>(estimate_.residual(link), covariances_[loop],
-                                                link.covariance, precision);
-  const auto gain = loop_gain<Pose>(prediction, mixture_);
+typename Pose::Tangent Assessment<Pose>::redundancy(const Explanation<Pose>& now,
+                                                    Index loop) const {
+  const auto& link = graph_.reduced.loops[loop];
+  const auto J = residual_jacobian<Pose>(estimate_.residual(link));
+  const Matrix fitted = link.information * J * covariances_[loop] * J.transpose();
+  return (1.0 - now.weights[loop] / now.scale.loops * fitted.diagonal().array()).max(0.0);
+}
+
+template <class Pose>
+void Assessment<Pose>::find_redundancy(Explanation<Pose>& now) const {
+  auto constraints = static_cast<double>(graph_.reduced.steps.size());
+  now.redundancy = {};
+  for (std::size_t k = 0; k < now.accepted.size(); ++k) {
+    if (!now.accepted[k] || graph_.reduced.loops[k].a == graph_.reduced.loops[k].b) continue;
+    const auto own = redundancy(now, static_cast<Index>(k));
+    now.redundancy.translation += own.template head<Pose::kDim>().sum();
+    now.redundancy.rotation += own.template tail<Pose::kDof - Pose::kDim>().sum();
+    constraints += 1.0;
+  }
+  const double all = Pose::kDof * (constraints - static_cast<double>(estimate_.variable_count()));
+  now.redundancy.odometry = std::max(all - now.redundancy.loops(), 0.0);
+}
+
+// Given all loops but itself, in what is known of the accuracy of odometry, too.
+template <class Pose>
+Standing Assessment<Pose>::accepted_standing(const Explanation<Pose>& now, Index loop) const {
+  const auto& link = graph_.reduced.loops[loop];
+  const auto prediction =
+      predict_without<Pose>(estimate_.residual(link), covariances_[loop], link.covariance,
+                            now.weights[loop] / now.scale.loops);
+  const double own = redundancy(now, loop).sum();
+  const Redundancy others{.odometry = std::max(now.redundancy.odometry - (Pose::kDof - own), 0.0),
+                          .translation = std::max(now.redundancy.loops() - own, 0.0),
+                          .rotation = 0.0};  // their sum matters here
+  const auto gain = loop_gain<Pose>(prediction, mixture_, objective_.scale_deviation(others));
   // Alone it would join parts that lie anywhere on the map.
   const double density = std::max(gain.log_density, -objective_.log_volume() - 0.5 * gain.chi2);
   return {.connected = true, .chi2 = gain.chi2, .evidence = density - log_alternative(loop)};
 }
 
 template <class Pose>
-Standing Assessment<Pose>::other_standing(Index loop) const {
-  const auto& link = graph_.loops[loop];
+Standing Assessment<Pose>::other_standing(const Explanation<Pose>& now, Index loop) const {
+  const auto& link = graph_.reduced.loops[loop];
   Standing standing{.connected = estimate_.connected(link)};
   double density = -objective_.log_volume();
   if (standing.connected) {
     const auto prediction =
         predict<Pose>(estimate_.residual(link), covariances_[loop], link.covariance);
-    const auto gain = loop_gain<Pose>(prediction, mixture_);
+    const auto gain =
+        loop_gain<Pose>(prediction, mixture_, objective_.scale_deviation(now.redundancy));
     standing.chi2 = gain.chi2;
     density = gain.log_density;
   }

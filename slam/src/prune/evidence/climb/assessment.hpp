@@ -30,35 +30,41 @@ class Assessment {
   const std::vector<Standing>& standings() const noexcept { return standings_; }
   const Estimate<Pose>& estimate() const noexcept { return estimate_; }
 
-  /// Of T_a^-1 T_b, one a loop; with the loop where it is accepted.
-  const std::vector<Matrix>& covariances() const noexcept { return covariances_; }
+  const ReducedGraph<Pose>& graph() const noexcept { return graph_.reduced; }
+
+  /// How much of each coordinate of an accepted loop is left to tell how accurate it is:
+  /// diag(I - w Omega J C J').
+  typename Pose::Tangent redundancy(const Explanation<Pose>& now, Index loop) const;
 
   /// log of the density that a loop's is held against.
   double log_alternative(Index loop) const {
-    return objective_.log_alternative(loop, near_, mixture_.scale);
+    return objective_.log_alternative(loop, near_, mixture_.scale, rotation_);
   }
 
  private:
+  void rescale(double rotation);
   void find_peak(Explanation<Pose>& now);
   bool reweigh(Explanation<Pose>& now);
   double uncertainty(const Explanation<Pose>& now, Index loop) const;
   void weigh_new(Explanation<Pose>& now);
   void bound(const Explanation<Pose>& now);
-  void weigh(const Explanation<Pose>& now);
-  Standing accepted_standing(Index loop, double precision) const;
-  Standing other_standing(Index loop) const;
+  void weigh(Explanation<Pose>& now);
+  void find_redundancy(Explanation<Pose>& now) const;
+  Standing accepted_standing(const Explanation<Pose>& now, Index loop) const;
+  Standing other_standing(const Explanation<Pose>& now, Index loop) const;
   void add_prior(const std::vector<bool>& accepted);
 
   const Objective<Pose>& objective_;
-  const ReducedGraph<Pose>& graph_;
+  ScaledGraph<Pose> graph_;
+  double rotation_ = 1.0;  // that graph_ is scaled by
   Estimate<Pose> estimate_;
   typename Estimate<Pose>::Layout odometry_;
   ScaleMixture mixture_;
   typename Objective<Pose>::NearByClass near_{};
   std::vector<Standing> standings_;
-  std::vector<Matrix> covariances_;
-  std::vector<bool> held_;   // loops that the covariances are given, for
-  double held_scale_ = 0.0;  // of odometry
+  std::vector<Matrix> covariances_;  // of T_a^-1 T_b, one a loop; with it where it is accepted
+  std::vector<bool> held_;           // loops that the covariances are given, for
+  double held_scale_ = 0.0;          // of odometry
 };
 
 extern template class Assessment<Pose2>;

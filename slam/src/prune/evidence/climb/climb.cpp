@@ -10,6 +10,7 @@ namespace isotherm::slam::detail {
 namespace {
 
 constexpr double kBetter = 0.1;  // nats by which an explanation must be better to go on
+constexpr int kPatience = 8;     // moves in a row that may find nothing better
 
 }  // namespace
 
@@ -21,24 +22,38 @@ Climb<Pose>::Climb(const Objective<Pose>& objective, const EvidenceOptions& opti
 template <class Pose>
 Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
   start(scale);
-  for (;;) {
-    const double before = best_.evidence;
+  double before = best_.evidence;
+  do {
+    before = best_.evidence;
     std::fill(dropped_.begin(), dropped_.end(), false);
     grow();
-    if (best_.evidence <= before + kBetter) return std::move(best_);
-  }
+  } while (best_.evidence > before + kBetter);
+  peaks_.insert(best_.accepted);
+  return std::move(best_);
+}
+
+template <class Pose>
+Explanation<Pose> Climb<Pose>::nothing() {
+  start({});
+  return now_;
+}
+
+// Whether an earlier climb ended with these loops: it has learnt what there is to learn from them.
+template <class Pose>
+bool Climb<Pose>::seen_before() const {
+  return peaks_.contains(now_.accepted);
 }
 
 template <class Pose>
 void Climb<Pose>::start(const CovarianceScale& scale) {
-  const std::size_t loops = objective_.graph().loops.size();
+  const std::size_t loops = objective_.stated().reduced.loops.size();
   now_ = {.accepted = std::vector<bool>(loops, false), .scale = scale};
   now_.shares.loops[0] = static_cast<double>(loops);
   now_.weights.assign(loops, 1.0);
   dropped_.assign(loops, false);
   assessment_.start_over();
-  predict_runs();
   assessment_.assess(now_);
+  predict_runs();
   best_ = now_;
 }
 
@@ -52,9 +67,13 @@ std::vector<Standing> Climb<Pose>::standings(const Explanation<Pose>& explanatio
 
 template <class Pose>
 void Climb<Pose>::grow() {
+  int vain = 0;  // moves since the best explanation so far
   for (int round = 0; round < options_.max_rounds; ++round) {
     tell_progress();
+    const double before = best_.evidence;
     if (!move()) return;
+    vain = best_.evidence > before ? 0 : vain + 1;
+    if (vain == kPatience) return;
   }
   settled_ = false;
 }
@@ -65,6 +84,7 @@ bool Climb<Pose>::move() {
   const Selection out = misfits();
   if (out.empty()) {
     const Selection batch = next_batch();
+    if (batch.empty() && seen_before()) return false;
     if (batch.empty()) return learn_more_than(0.0);
     accept(batch);
   } else if (!learn_more_than(gain_of_dropping(out))) {
@@ -79,18 +99,21 @@ void Climb<Pose>::assess() {
   if (now_.evidence > best_.evidence) best_ = now_;
 }
 
+// Of the accepted loops that lower the evidence the worse half, and all that are at least half as
+// bad as the worst: each one dropped changes what is predicted of the rest.
 template <class Pose>
 typename Climb<Pose>::Selection Climb<Pose>::misfits() const {
   const auto& standings = assessment_.standings();
-  double worst = 0.0;
+  std::vector<double> worst;
   for (std::size_t k = 0; k < standings.size(); ++k) {
-    if (now_.accepted[k]) worst = std::min(worst, standings[k].log_odds);
+    if (now_.accepted[k] && standings[k].log_odds < 0.0) worst.push_back(standings[k].log_odds);
   }
+  if (worst.empty()) return {};
+  std::ranges::sort(worst);
+  const double most = std::max(0.5 * worst.front(), worst[worst.size() / 2]);
   Selection out;
   for (std::size_t k = 0; k < standings.size(); ++k) {
-    if (now_.accepted[k] && worst < 0.0 && standings[k].log_odds <= 0.5 * worst) {
-      out.push_back(static_cast<Index>(k));
-    }
+    if (now_.accepted[k] && standings[k].log_odds <= most) out.push_back(static_cast<Index>(k));
   }
   return out;
 }
@@ -134,18 +157,24 @@ void Climb<Pose>::accept(const Selection& loops) {
 template <class Pose>
 bool Climb<Pose>::learn_more_than(double gain) {
   if (!options_.calibrate) return false;
-  const Lesson lesson = learn(objective_, assessment_, now_);
+  const Lesson lesson = learn(assessment_, now_);
   return lesson.gain > std::max(gain, kBetter) && try_lesson(lesson);
 }
 
-// Whether it is better.
+// Whether it is better. Scales at which the normal equations break down explain nothing.
 template <class Pose>
 bool Climb<Pose>::try_lesson(const Lesson& lesson) {
   const Explanation<Pose> before = now_;
   now_.scale = lesson.scale;
+  now_.rotation = lesson.rotation;
   now_.shares = lesson.shares;
-  assess();
-  const bool better = now_.evidence > before.evidence + kBetter;
+  bool better = false;
+  try {
+    assess();
+    better = now_.evidence > before.evidence + kBetter;
+  } catch (const NumericalError&) {
+    better = false;
+  }
   if (!better) {
     now_ = before;
     assessment_.restore(now_);
@@ -157,7 +186,7 @@ bool Climb<Pose>::try_lesson(const Lesson& lesson) {
 
 template <class Pose>
 void Climb<Pose>::predict_runs() {
-  run_density_ = objective_.runs().log_density(now_.scale);
+  run_density_ = objective_.runs().log_density(assessment_.graph(), now_.scale);
 }
 
 template <class Pose>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <set>
 #include <vector>
 
 #include "isotherm/slam/prune/evidence.hpp"
@@ -25,6 +26,9 @@ class Climb {
   /// explanation on the way.
   Explanation<Pose> from(const CovarianceScale& start);
 
+  /// Nothing accepted, the covariances as stated.
+  Explanation<Pose> nothing();
+
   /// What each loop is worth given all others of an explanation.
   std::vector<Standing> standings(const Explanation<Pose>& explanation);
 
@@ -34,6 +38,7 @@ class Climb {
 
  private:
   void start(const CovarianceScale& scale);
+  bool seen_before() const;
   void grow();
   bool move();
   void assess();
@@ -54,8 +59,9 @@ class Climb {
   Assessment<Pose> assessment_;
   Explanation<Pose> now_;
   Explanation<Pose> best_;
-  std::vector<double> run_density_;  // log p(z | the loop before in its run)
-  std::vector<bool> dropped_;        // since the climb last rose; not tried again
+  std::vector<double> run_density_;    // log p(z | the loop before in its run)
+  std::set<std::vector<bool>> peaks_;  // loops with which climbs ended
+  std::vector<bool> dropped_;          // since the climb last rose; not tried again
   std::vector<EvidenceMove> moves_;
   bool settled_ = true;
 };

@@ -13,6 +13,15 @@ namespace {
 const double kMostScale = std::log(1e8);
 constexpr int kRepetitions = 10;  // of expectation maximisation, from the prior
 
+// The likeliest factor where the evidence has its peak at `factor` with curvature redundancy / 2
+// of the log, drawn towards 1 by the prior.
+double drawn_in(double factor, double redundancy) {
+  const double precision = 0.5 * redundancy;
+  const double peak =
+      std::log(factor) * precision / (precision + 1.0 / (kScaleDeviation * kScaleDeviation));
+  return std::exp(std::clamp(peak, -kMostScale, kMostScale));
+}
+
 /// Of one kind of measurement.
 struct Component {
   double cost = 0.0;  // in the file's units
@@ -22,40 +31,34 @@ struct Component {
     return -0.5 * (cost / scale + redundancy * std::log(scale)) + log_scale_prior(scale);
   }
 
-  // The log of a factor whose evidence peaks at log(cost / redundancy) with curvature
-  // redundancy / 2, drawn towards 0 by its prior.
   double likeliest(double before) const {
-    if (redundancy < 1.0 || !(cost > 0.0)) return before;
-    const double precision = 0.5 * redundancy;
-    const double peak = std::log(cost / redundancy) * precision /
-                        (precision + 1.0 / (kScaleDeviation * kScaleDeviation));
-    return std::exp(std::clamp(peak, -kMostScale, kMostScale));
+    return redundancy < 1.0 || !(cost > 0.0) ? before : drawn_in(cost / redundancy, redundancy);
   }
 };
 
 /// Of a loop.
 struct Residual {
-  double chi2 = 0.0;  // in the file's units
+  double chi2() const { return translation + rotation; }
+
+  double translation = 0.0;  // parts of chi-squared, in the file's units
+  double rotation = 0.0;
   double redundancy = 0.0;
   double weight = 1.0;
 };
 
 template <class Pose>
-std::vector<Residual> residuals_of(const ReducedGraph<Pose>& graph,
-                                   const Assessment<Pose>& assessment,
+std::vector<Residual> residuals_of(const Assessment<Pose>& assessment,
                                    const Explanation<Pose>& explanation) {
   std::vector<Residual> residuals;
   for (std::size_t k = 0; k < explanation.accepted.size(); ++k) {
-    const auto& loop = graph.loops[k];
+    const auto& loop = assessment.graph().loops[k];
     if (!explanation.accepted[k] || loop.a == loop.b) continue;
-    const double weight = explanation.weights[k];
     const typename Pose::Tangent r = assessment.estimate().residual(loop);
-    const typename Pose::Matrix J = residual_jacobian<Pose>(r);
-    const double known =
-        (loop.information * J * assessment.covariances()[k] * J.transpose()).trace();
-    residuals.push_back({r.dot(loop.information * r),
-                         std::max(Pose::kDof - weight * known / explanation.scale.loops, 0.0),
-                         weight});
+    const typename Pose::Tangent chi2 = r.cwiseProduct(loop.information * r);
+    const double translation = chi2.template head<Pose::kDim>().sum();
+    residuals.push_back({translation, chi2.sum() - translation,
+                         assessment.redundancy(explanation, static_cast<Index>(k)).sum(),
+                         explanation.weights[k]});
   }
   return residuals;
 }
@@ -66,10 +69,10 @@ ScaleShares likeliest_shares(const std::vector<Residual>& residuals, double scal
   for (int k = 0; k < kRepetitions; ++k) {
     const ScaleMixture mixture = expected_mixture(scale, shares);
     shares = {};
-    for (const auto& [chi2, redundancy, weight] : residuals) {
-      const ErrorScale error = error_scale(mixture, chi2 / scale, redundancy);
+    for (const Residual& residual : residuals) {
+      const ErrorScale error = error_scale(mixture, residual.chi2() / scale, residual.redundancy);
       for (std::size_t j = 0; j < kScaleCount; ++j) {
-        shares.loops[j] += error.probability[j] * redundancy / dof;
+        shares.loops[j] += error.probability[j] * residual.redundancy / dof;
       }
     }
   }
@@ -78,10 +81,11 @@ ScaleShares likeliest_shares(const std::vector<Residual>& residuals, double scal
 
 double log_likelihood(const ScaleMixture& mixture, const std::vector<Residual>& residuals) {
   double sum = log_scale_prior(mixture.scale);
-  for (const auto& [chi2, redundancy, weight] : residuals) {
-    const ErrorScale error = error_scale(mixture, chi2 / mixture.scale, redundancy);
+  for (const Residual& residual : residuals) {
+    const double chi2 = residual.chi2() / mixture.scale;
+    const ErrorScale error = error_scale(mixture, chi2, residual.redundancy);
     sum += error.evidence -
-           0.5 * (error.weight * chi2 / mixture.scale + redundancy * std::log(mixture.scale));
+           0.5 * (error.weight * chi2 + residual.redundancy * std::log(mixture.scale));
     for (std::size_t j = 0; j < kScaleCount; ++j) {
       sum += error.probability[j] * mixture.log_share[j];
     }
@@ -89,35 +93,54 @@ double log_likelihood(const ScaleMixture& mixture, const std::vector<Residual>& 
   return sum;
 }
 
+// The ratio of rotation's scale to translation's under which the loops are likeliest.
+double likeliest_ratio(const std::vector<Residual>& residuals, const Redundancy& redundancy,
+                       double before) {
+  double translation = 0.0;
+  double rotation = 0.0;
+  for (const Residual& residual : residuals) {
+    translation += residual.weight * residual.translation;
+    rotation += residual.weight * residual.rotation;
+  }
+  const bool known = redundancy.translation >= 1.0 && redundancy.rotation >= 1.0 &&
+                     translation > 0.0 && rotation > 0.0;
+  if (!known) return before;
+  return drawn_in(
+      before * (rotation / redundancy.rotation) / (translation / redundancy.translation),
+      redundancy.ratio());
+}
+
 }  // namespace
 
 template <class Pose>
-Lesson learn(const Objective<Pose>& objective, const Assessment<Pose>& assessment,
-             const Explanation<Pose>& explanation) {
-  const auto& graph = objective.graph();
-  const auto& estimate = assessment.estimate();
-  const auto residuals = residuals_of(graph, assessment, explanation);
-  const auto constraints = static_cast<double>(graph.steps.size() + residuals.size());
-  Component odometry = {
-      estimate.odometry_cost(),
-      Pose::kDof * (constraints - static_cast<double>(estimate.variable_count()))};
-  Component loops;
-  for (const auto& [chi2, redundancy, weight] : residuals) {
-    loops.cost += weight * chi2;
-    loops.redundancy += redundancy;
-  }
-  odometry.redundancy -= loops.redundancy;
+Lesson learn(const Assessment<Pose>& assessment, const Explanation<Pose>& explanation) {
   const CovarianceScale& before = explanation.scale;
-  Lesson lesson;
+  const Redundancy& redundancy = explanation.redundancy;
+  auto residuals = residuals_of(assessment, explanation);
+  const double fit_before =
+      log_likelihood(expected_mixture(before.loops, explanation.shares), residuals);
+
+  Lesson lesson{.rotation = likeliest_ratio(residuals, redundancy, explanation.rotation)};
+  const PartScales<Pose> parts(lesson.rotation / explanation.rotation);
+  Component loops = {0.0, redundancy.loops()};
+  for (Residual& residual : residuals) {
+    residual.translation /= parts.translation;
+    residual.rotation /= parts.rotation;
+    loops.cost += residual.weight * residual.chi2();
+  }
+  const Component odometry = {assessment.estimate().odometry_cost(), redundancy.odometry};
   lesson.scale = {odometry.likeliest(before.odometry), loops.likeliest(before.loops)};
   lesson.shares = likeliest_shares(residuals, lesson.scale.loops, Pose::kDof);
   lesson.gain = odometry.evidence(lesson.scale.odometry) - odometry.evidence(before.odometry) +
                 log_likelihood(expected_mixture(lesson.scale.loops, lesson.shares), residuals) -
-                log_likelihood(expected_mixture(before.loops, explanation.shares), residuals);
+                fit_before -
+                0.5 * (redundancy.translation * std::log(parts.translation) +
+                       redundancy.rotation * std::log(parts.rotation)) +
+                log_scale_prior(lesson.rotation) - log_scale_prior(explanation.rotation);
   return lesson;
 }
 
-template Lesson learn(const Objective<Pose2>&, const Assessment<Pose2>&, const Explanation<Pose2>&);
-template Lesson learn(const Objective<Pose3>&, const Assessment<Pose3>&, const Explanation<Pose3>&);
+template Lesson learn(const Assessment<Pose2>&, const Explanation<Pose2>&);
+template Lesson learn(const Assessment<Pose3>&, const Explanation<Pose3>&);
 
 }  // namespace isotherm::slam::detail

@@ -25,7 +25,7 @@ double ScaleShares::log_evidence() const {
 }
 
 ScaleMixture expected_mixture(double scale, const ScaleShares& shares) {
-  ScaleMixture mixture{.scale = scale, .relative = {1.0, 1.0 / scale}};
+  ScaleMixture mixture{.scale = scale, .relative = {1.0, std::max(1.0, 1.0 / scale)}};
   for (std::size_t j = 0; j < kScaleCount; ++j) {
     mixture.log_share[j] =
         std::log((kPriorLoops + shares.loops[j]) / found_and_prior(shares.loops));

@@ -21,7 +21,8 @@ struct ScaleShares {
 /// What is expected of the next loop.
 struct ScaleMixture {
   double scale = 1.0;  ///< on the stated covariance, of most
-  ByScale relative{};  ///< scales against that of most
+  /// Scales against that of most; of the second that of the file, where most are more accurate.
+  ByScale relative{};
   ByScale log_share{};
 };
 

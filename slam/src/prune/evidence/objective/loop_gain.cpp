@@ -1,7 +1,11 @@
 #include "prune/evidence/objective/loop_gain.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -13,6 +17,60 @@ namespace {
 
 // A share of redundancy below this is rounding: only the loop itself measures there.
 constexpr double kLeastShare = 1e-6;
+
+// The integral over the log of a factor, in deviations: the trapezoidal rule to 2.8 of them.
+constexpr double kNoDeviation = 0.1;
+constexpr int kNodes = 4;  // on either side
+constexpr double kNodeStep = 0.7;
+
+struct Factor {
+  double value = 1.0;
+  double log_weight = 0.0;
+};
+
+std::vector<Factor> factors(double deviation) {
+  const int nodes = deviation < kNoDeviation ? 0 : kNodes;
+  double sum = 0.0;
+  std::vector<Factor> result;
+  for (int i = -nodes; i <= nodes; ++i) {
+    const double x = kNodeStep * i;
+    result.push_back({std::exp(deviation * x), -0.5 * x * x});
+    sum += std::exp(-0.5 * x * x);
+  }
+  for (Factor& factor : result) factor.log_weight -= std::log(sum);
+  return result;
+}
+
+// log N(r; variance + own) but for a constant.
+template <class Pose>
+double log_fit(const typename Pose::Tangent& r, const typename Pose::Tangent& variance,
+               double own) {
+  const typename Pose::Tangent S = variance.array() + own;
+  return -0.5 * (S.array().log().sum() + (r.array().square() / S.array()).sum());
+}
+
+// log of sums of exponentials, without overflow.
+template <std::size_t Count>
+class LogSum {
+ public:
+  LogSum() { terms_.fill(-std::numeric_limits<double>::infinity()); }
+
+  void add(std::size_t at, double log_term) {
+    const auto [less, more] = std::minmax(terms_[at], log_term);
+    terms_[at] = more + std::log1p(std::exp(less - more));
+  }
+
+  const std::array<double, Count>& terms() const noexcept { return terms_; }
+
+  double total() const {
+    LogSum<1> sum;
+    for (const double term : terms_) sum.add(0, term);
+    return sum.terms()[0];
+  }
+
+ private:
+  std::array<double, Count> terms_;
+};
 
 }  // namespace
 
@@ -44,21 +102,24 @@ Prediction<Pose> predict_without(const typename Pose::Tangent& r, const typename
 }
 
 template <class Pose>
-LoopGain loop_gain(const Prediction<Pose>& prediction, const ScaleMixture& mixture) {
+LoopGain loop_gain(const Prediction<Pose>& prediction, const ScaleMixture& mixture,
+                   const CovarianceScale& deviation) {
   const auto& [r, variance, log_sigma] = prediction;
-  ByScale log_density;
-  for (std::size_t j = 0; j < kScaleCount; ++j) {
-    const auto S = (variance.array() + mixture.scale * mixture.relative[j]).eval();
-    log_density[j] =
-        mixture.log_share[j] - 0.5 * ((r.array().square() / S).sum() + std::log(S.prod()));
+  const auto most = factors(deviation.loops);
+  LogSum<kScaleCount> density;
+  for (const Factor& odometry : factors(deviation.odometry)) {
+    const typename Pose::Tangent others = odometry.value * variance;
+    for (const Factor& own : most) {
+      density.add(0, mixture.log_share[0] + odometry.log_weight + own.log_weight +
+                         log_fit<Pose>(r, others, own.value * mixture.scale));
+    }
+    density.add(1, mixture.log_share[1] + odometry.log_weight +
+                       log_fit<Pose>(r, others, mixture.scale * mixture.relative[1]));
   }
-  const double most = *std::ranges::max_element(log_density);
-  double sum = 0.0;
-  for (const double value : log_density) sum += std::exp(value - most);
   LoopGain gain;
-  gain.log_density = most + std::log(sum) - 0.5 * (log_sigma + Pose::kDof * kLog2Pi);
+  gain.log_density = density.total() - 0.5 * (log_sigma + Pose::kDof * kLog2Pi);
   gain.chi2 = (r.array().square() / (variance.array() + mixture.scale)).sum();
-  gain.weight = error_scale(mixture, log_density, Pose::kDof).weight;
+  gain.weight = error_scale(mixture, density.terms(), Pose::kDof).weight;
   return gain;
 }
 
@@ -70,7 +131,7 @@ template Prediction<Pose2> predict_without(const Pose2::Tangent&, const Pose2::M
                                            const Pose2::Matrix&, double);
 template Prediction<Pose3> predict_without(const Pose3::Tangent&, const Pose3::Matrix&,
                                            const Pose3::Matrix&, double);
-template LoopGain loop_gain(const Prediction<Pose2>&, const ScaleMixture&);
-template LoopGain loop_gain(const Prediction<Pose3>&, const ScaleMixture&);
+template LoopGain loop_gain(const Prediction<Pose2>&, const ScaleMixture&, const CovarianceScale&);
+template LoopGain loop_gain(const Prediction<Pose3>&, const ScaleMixture&, const CovarianceScale&);
 
 }  // namespace isotherm::slam::detail

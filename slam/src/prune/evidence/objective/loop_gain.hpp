@@ -32,7 +32,10 @@ struct LoopGain {
   double weight = 1.0;       ///< see ErrorScale
 };
 
+/// Integrates over the factors on covariances, whose logs are known to within `deviation`: what
+/// others leave to the loop grows with that of odometry.
 template <class Pose>
-LoopGain loop_gain(const Prediction<Pose>& prediction, const ScaleMixture& mixture);
+LoopGain loop_gain(const Prediction<Pose>& prediction, const ScaleMixture& mixture,
+                   const CovarianceScale& deviation = {0.0, 0.0});
 
 }  // namespace isotherm::slam::detail

@@ -47,7 +47,8 @@ NearDensity<Pose>::NearDensity(const ReducedGraph<Pose>& graph) {
 }
 
 // Medians and median deviations, with the loops' own uncertainty. However well places are told
-// apart, the nearest pose to one is up to a step of odometry away.
+// apart, the nearest pose to one is up to a step of odometry away: as if one loop more had been
+// off by that, since a few loops say little of how far others are.
 template <class Pose>
 void NearDensity<Pose>::fit(const ReducedGraph<Pose>& graph) {
   const auto loops = forward_loops(graph, {});
@@ -70,7 +71,8 @@ void NearDensity<Pose>::fit(const ReducedGraph<Pose>& graph) {
   reach_ = 0.0;
   for (int d = 0; d < Pose::kDof; ++d) {
     const double mad = median_over([&](const auto& m) { return std::abs(offset(m.T)[d]); });
-    spread_[d] = kDeviationOfMad * mad * kDeviationOfMad * mad;
+    const auto count = static_cast<double>(loops.size());
+    spread_[d] = (count * kDeviationOfMad * mad * kDeviationOfMad * mad + step[d]) / (count + 1.0);
     own_[d] = median_over([d](const auto& m) { return m.covariance(d, d); });
     const double near = std::sqrt(spread_[d] + own_[d] + step[d]);
     inverse_deviation_[d] = 1.0 / near;
@@ -83,9 +85,9 @@ void NearDensity<Pose>::fit(const ReducedGraph<Pose>& graph) {
 // f is normal around the median or has the shape of k, with even odds: measurements are often
 // much alike, those of false loops above all, and some are not.
 template <class Pose>
-double NearDensity<Pose>::log_false_density(Index loop, double scale) const {
+double NearDensity<Pose>::log_false_density(Index loop, const Tangent& scale) const {
   const Tangent& wide = measured_[loop];
-  const Tangent variance = spread_ + std::max(scale, 1.0) * own_;
+  const Tangent variance = spread_ + scale.cwiseMax(1.0).cwiseProduct(own_);
   const Tangent ratio = inverse_deviation_.cwiseProduct(variance.cwiseSqrt()).cwiseInverse();
   const double nearer = wide.squaredNorm() - wide.cwiseProduct(ratio).squaredNorm();
   const double more = ratio.array().log().sum() + 0.5 * nearer;  // log of normal over wide

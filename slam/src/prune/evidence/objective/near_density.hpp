@@ -34,11 +34,12 @@ class NearDensity {
   /// log k_mean of each proposal class, with the graph's nodes at `poses`.
   std::array<double, kProposalClasses> log_mean(const std::vector<Pose>& poses) const;
 
-  /// log f(z) / k(z) of a loop's measurement z, with `scale` the factor on loops' covariances.
-  double log_false_density(Index loop, double scale) const;
+  using Tangent = typename Pose::Tangent;
+
+  /// log f(z) / k(z) of a loop's measurement z, with `scale` the factors on loops' variances.
+  double log_false_density(Index loop, const Tangent& scale) const;
 
  private:
-  using Tangent = typename Pose::Tangent;
   /// A vertex of the full graph, as odometry ties it to a node.
   struct Place {
     Index vertex = 0;

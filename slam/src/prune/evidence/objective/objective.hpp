@@ -7,8 +7,21 @@
 #include "prune/evidence/objective/error_scales.hpp"
 #include "prune/evidence/objective/near_density.hpp"
 #include "prune/evidence/objective/runs.hpp"
+#include "prune/evidence/objective/scale_prior.hpp"
+#include "prune/evidence/objective/scaled_graph.hpp"
 
 namespace isotherm::slam::detail {
+
+/// How many of the numbers measured are left to tell how accurate they are.
+struct Redundancy {
+  double odometry = 0.0;
+  double translation = 0.0;  ///< of loops
+  double rotation = 0.0;     ///< of loops
+
+  double loops() const { return translation + rotation; }
+  /// That of the ratio of the two accuracies.
+  double ratio() const { return loops() > 0.0 ? translation * rotation / loops() : 0.0; }
+};
 
 /// What explains the measurements: which loops are true, and how accurate everything is.
 /// A plain value; a trial is a copy.
@@ -16,10 +29,12 @@ template <class Pose>
 struct Explanation {
   std::vector<bool> accepted;   ///< one a loop
   CovarianceScale scale;        ///< factors on the stated covariances; of loops, that of most
+  double rotation = 1.0;        ///< factor on covariances of rotation against translation's
   ScaleShares shares;           ///< of loops as accurate as most and as stated, as believed
   ScaleShares found;            ///< the same, as found among the accepted ones
   std::vector<double> weights;  ///< of the loops' information, by their scales; one a loop
   double scale_evidence = 0.0;  ///< ErrorScale::evidence, summed over the accepted ones
+  Redundancy redundancy;        ///< of odometry and of the accepted loops
   typename Estimate<Pose>::Layout layout;
   double evidence = 0.0;  ///< Objective::evidence()
 };
@@ -32,9 +47,10 @@ struct Explanation {
 /// with p by Laplace's approximation from the factor that the estimate holds, f and k as in
 /// NearDensity, pi(A) the Beta-binomial of a fraction of which nothing is known. The scales are
 /// log-normal around what the file states, a factor of ten in the standard deviation being one
-/// deviation. Which loops are as accurate as most and which as stated (ScaleShares) is integrated
-/// out by variational Bayes (Bishop, Pattern Recognition and Machine Learning, 10.1), which gives a
-/// lower bound. A part that A joins to another lies anywhere on the map.
+/// deviation, and integrated over by Laplace's approximation. Which loops are as accurate as most
+/// and which as stated (ScaleShares) is integrated out by variational Bayes (Bishop, Pattern
+/// Recognition and Machine Learning, 10.1), which gives a lower bound. A part that A joins to
+/// another lies anywhere on the map.
 ///
 /// The same number is what accepting the loops one by one adds (loop_gain), in any order.
 template <class Pose>
@@ -42,11 +58,14 @@ class Objective {
  public:
   using NearByClass = std::array<double, kProposalClasses>;
 
-  /// `graph` must outlive this object. Loops whose ends lie within `window` vertices of
-  /// another's can be in one run.
-  Objective(const ReducedGraph<Pose>& graph, Index window);
+  /// `graph` and `roles` must outlive this object. Loops whose ends lie within `window` vertices of
+  /// another's can be in one run. Without `calibrate` the scales are known.
+  Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles, Index window,
+            bool calibrate = true);
 
-  const ReducedGraph<Pose>& graph() const noexcept { return graph_; }
+  /// As stated.
+  const ScaledGraph<Pose>& stated() const noexcept { return stated_; }
+  ScaledGraph<Pose> scaled(double ratio) const { return scaled_graph(graph_, roles_, ratio); }
   const Runs<Pose>& runs() const noexcept { return runs_; }
 
   /// log k_mean of each class of loops on the map with nodes at `poses`.
@@ -55,24 +74,35 @@ class Objective {
   /// The density that a loop's is held against: that of loops near by chance; for one that
   /// copies the measurement of the one before it in its run, that of a copy, so that a group
   /// of copies counts as one draw.
-  double log_alternative(Index loop, const NearByClass& near, double loop_scale) const;
+  double log_alternative(Index loop, const NearByClass& near, double loop_scale,
+                         double rotation) const;
+
+  /// Of the logs of the factors on covariances that measurements of this redundancy tell.
+  CovarianceScale scale_deviation(const Redundancy& redundancy) const {
+    if (!calibrate_) return {0.0, 0.0};
+    return {detail::scale_deviation(redundancy.odometry),
+            detail::scale_deviation(redundancy.loops())};
+  }
 
   /// log of the volume of relative poses that the map of odometry allows.
   double log_volume() const noexcept { return log_volume_; }
 
-  /// `estimate` must have settled on the explanation's loops, scales and weights.
-  double evidence(const Explanation<Pose>& explanation, const Estimate<Pose>& estimate,
-                  const NearByClass& near) const;
+  /// `estimate` must have settled on the explanation's loops, scales and weights, on `graph`.
+  double evidence(const Explanation<Pose>& explanation, const ScaledGraph<Pose>& graph,
+                  const Estimate<Pose>& estimate, const NearByClass& near) const;
 
  private:
-  double loops_fit(const Explanation<Pose>& explanation, const Estimate<Pose>& estimate) const;
+  double log_scales(const Explanation<Pose>& explanation) const;
+  double loops_fit(const Explanation<Pose>& explanation, const ScaledGraph<Pose>& graph,
+                   const Estimate<Pose>& estimate) const;
 
-  const ReducedGraph<Pose>& graph_;
+  const PoseGraph<Pose>& graph_;
+  const EdgeRoles& roles_;
+  ScaledGraph<Pose> stated_;
   NearDensity<Pose> near_;
   Runs<Pose> runs_;
+  bool calibrate_;
   double log_volume_;
-  double odometry_log_determinant_ = 0.0;
-  Index odometry_variables_ = 0;
   std::vector<double> log_sigma_;  // log|Sigma| of each loop
 };
 

@@ -13,7 +13,7 @@ namespace isotherm::slam::detail {
 
 template <class Pose>
 Runs<Pose>::Runs(const ReducedGraph<Pose>& graph, Index window)
-    : graph_(graph), before_(graph.loops.size(), kNone), copied_(graph.loops.size(), false) {
+    : before_(graph.loops.size(), kNone), copied_(graph.loops.size(), false) {
   const auto loops = forward_loops(graph, {});
   std::vector<Index> nearest(loops.size(), std::numeric_limits<Index>::max());
   // By place, not by the order of the file.
@@ -31,12 +31,13 @@ Runs<Pose>::Runs(const ReducedGraph<Pose>& graph, Index window)
 }
 
 template <class Pose>
-std::vector<double> Runs<Pose>::log_density(const CovarianceScale& scale) const {
-  const auto loops = forward_loops(graph_, scale);
+std::vector<double> Runs<Pose>::log_density(const ReducedGraph<Pose>& graph,
+                                            const CovarianceScale& scale) const {
+  const auto loops = forward_loops(graph, scale);
   std::vector<double> densities(loops.size(), 0.0);
   for (std::size_t k = 0; k < loops.size(); ++k) {
     if (before_[k] == kNone) continue;
-    const auto [r, S] = pair_residual(graph_, scale, loops[before_[k]], loops[k]);
+    const auto [r, S] = pair_residual(graph, scale, loops[before_[k]], loops[k]);
     densities[k] = log_normal<Pose>(r, S);
   }
   return densities;

@@ -20,10 +20,10 @@ class Runs {
   bool copied(Index loop) const { return copied_[loop]; }
 
   /// log N(z; what the loop before predicts), one a loop; of those without one, 0.
-  std::vector<double> log_density(const CovarianceScale& scale) const;
+  std::vector<double> log_density(const ReducedGraph<Pose>& graph,
+                                  const CovarianceScale& scale) const;
 
  private:
-  const ReducedGraph<Pose>& graph_;
   std::vector<Index> before_;
   std::vector<bool> copied_;
 };

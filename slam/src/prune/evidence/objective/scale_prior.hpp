@@ -15,4 +15,10 @@ inline double log_scale_prior(double scale) {
   return -0.5 * deviations * deviations;
 }
 
+/// Deviation of the log of a factor that measurements of this redundancy tell, too: their
+/// likelihood has curvature redundancy / 2 at its peak (Laplace).
+inline double scale_deviation(double redundancy) {
+  return 1.0 / std::sqrt(0.5 * redundancy + 1.0 / (kScaleDeviation * kScaleDeviation));
+}
+
 }  // namespace isotherm::slam::detail
