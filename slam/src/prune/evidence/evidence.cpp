@@ -12,11 +12,13 @@
 #include "isotherm/base/error.hpp"
 #include "prune/consensus/judge/log_odds.hpp"
 #include "prune/evidence/climb/climb.hpp"
+#include "prune/evidence/objective/log_sum.hpp"
 
 namespace isotherm::slam {
 namespace {
 
 using detail::Explanation;
+using detail::log_sum;
 using spectral::Verdict;
 
 // Factors on the stated covariances of odometry and of loops to start from. What is true agrees
@@ -42,11 +44,6 @@ std::vector<Explanation<Pose>> explanations(detail::Climb<Pose>& climb, bool cal
   }
   std::ranges::stable_sort(found, std::greater{}, &Explanation<Pose>::evidence);
   return found;
-}
-
-// log(exp(a) + exp(b)).
-double log_sum(double a, double b) {
-  return std::max(a, b) + std::log1p(std::exp(-std::abs(a - b)));
 }
 
 // Each loop's log odds by all explanations, by their evidence. One at about the scale of a better

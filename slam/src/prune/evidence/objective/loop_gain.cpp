@@ -1,7 +1,6 @@
 #include "prune/evidence/objective/loop_gain.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -11,6 +10,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "prune/consensus/estimate/log_normal.hpp"
+#include "prune/evidence/objective/log_sum.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -49,29 +49,6 @@ double log_fit(const typename Pose::Tangent& r, const typename Pose::Tangent& va
   return -0.5 * (S.array().log().sum() + (r.array().square() / S.array()).sum());
 }
 
-// log of sums of exponentials, without overflow.
-template <std::size_t Count>
-class LogSum {
- public:
-  LogSum() { terms_.fill(-std::numeric_limits<double>::infinity()); }
-
-  void add(std::size_t at, double log_term) {
-    const auto [less, more] = std::minmax(terms_[at], log_term);
-    terms_[at] = more + std::log1p(std::exp(less - more));
-  }
-
-  const std::array<double, Count>& terms() const noexcept { return terms_; }
-
-  double total() const {
-    LogSum<1> sum;
-    for (const double term : terms_) sum.add(0, term);
-    return sum.terms()[0];
-  }
-
- private:
-  std::array<double, Count> terms_;
-};
-
 }  // namespace
 
 template <class Pose>
@@ -106,20 +83,24 @@ LoopGain loop_gain(const Prediction<Pose>& prediction, const ScaleMixture& mixtu
                    const CovarianceScale& deviation) {
   const auto& [r, variance, log_sigma] = prediction;
   const auto most = factors(deviation.loops);
-  LogSum<kScaleCount> density;
+  ByScale density;
+  density.fill(-std::numeric_limits<double>::infinity());
+  const auto add = [&density](std::size_t scale, double log_term) {
+    density[scale] = log_sum(density[scale], log_term);
+  };
   for (const Factor& odometry : factors(deviation.odometry)) {
     const typename Pose::Tangent others = odometry.value * variance;
     for (const Factor& own : most) {
-      density.add(0, mixture.log_share[0] + odometry.log_weight + own.log_weight +
-                         log_fit<Pose>(r, others, own.value * mixture.scale));
+      add(0, mixture.log_share[0] + odometry.log_weight + own.log_weight +
+                 log_fit<Pose>(r, others, own.value * mixture.scale));
     }
-    density.add(1, mixture.log_share[1] + odometry.log_weight +
-                       log_fit<Pose>(r, others, mixture.scale * mixture.relative[1]));
+    add(1, mixture.log_share[1] + odometry.log_weight +
+               log_fit<Pose>(r, others, mixture.scale * mixture.relative[1]));
   }
   LoopGain gain;
-  gain.log_density = density.total() - 0.5 * (log_sigma + Pose::kDof * kLog2Pi);
+  gain.log_density = log_sum(density[0], density[1]) - 0.5 * (log_sigma + Pose::kDof * kLog2Pi);
   gain.chi2 = (r.array().square() / (variance.array() + mixture.scale)).sum();
-  gain.weight = error_scale(mixture, density.terms(), Pose::kDof).weight;
+  gain.weight = error_scale(mixture, density, Pose::kDof).weight;
   return gain;
 }
 
