@@ -23,7 +23,8 @@ using spectral::Verdict;
 
 // Factors on the stated covariances of odometry and of loops to start from. What is true agrees
 // best: a climb that starts from sharper loops than stated is not drawn to false ones first.
-const std::array<detail::CovarianceScale, 3> kStarts = {{{1.0, 1.0}, {1.0, 0.01}, {0.01, 0.01}}};
+const std::array<detail::CovarianceScale, 4> kStarts = {
+    {{1.0, 1.0}, {100.0, 1.0}, {1.0, 0.01}, {0.01, 0.01}}};
 constexpr double kNegligible = -20.0;  // log weight of an explanation
 
 // Fewer loops say too little of how accurate odometry is for one of them to be pruned.
@@ -108,7 +109,7 @@ void report(detail::Climb<Pose>& climb, const std::vector<Explanation<Pose>>& fo
   }
   result.odometry_scale = best.scale.odometry;
   result.loop_scale = best.scale.loops;
-  result.rotation_scale = best.rotation;
+  result.rotation_scale = detail::rotation_against_translation<Pose>(best.shapes.loops);
   result.share_as_stated =
       std::exp(detail::expected_mixture(best.scale.loops, best.shares).log_share.back());
   result.log_evidence = best.evidence;

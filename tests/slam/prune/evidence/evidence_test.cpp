@@ -91,6 +91,25 @@ TYPED_TEST(EvidenceOf, LearnsRotationAgainstTranslation) {
   EXPECT_EQ(count(result.verdicts, Verdict::prune), 0);
 }
 
+// A robot that drives on a floor, in a file of poses in space: of three coordinates there is
+// nothing to learn but that they have no error.
+TEST(Evidence, KeepsTheLoopsOfAFloorInSpace) {
+  const auto city = simulate_city({.poses = 400, .measurements = {.loops = 120}, .seed = 6});
+  PoseGraph<Pose3> lifted;
+  lifted.ids = city.graph.ids;
+  const auto lift = [](const Pose2& T) {
+    return Pose3(Eigen::Vector3d(T.x(), T.y(), 0.0),
+                 Eigen::Quaterniond(Eigen::AngleAxisd(T.theta(), Eigen::Vector3d::UnitZ())));
+  };
+  for (const auto& pose : city.graph.initial) lifted.initial.push_back(lift(pose));
+  for (const auto& constraint : city.graph.constraints) {
+    lifted.constraints.push_back({constraint.from, constraint.to, lift(constraint.T_from_to),
+                                  100.0 * Pose3::Matrix::Identity()});
+  }
+  const auto result = judge_by_evidence(lifted, edge_roles(lifted));
+  EXPECT_EQ(count(result.verdicts, Verdict::keep), 120);
+}
+
 // Whether odometry or they are wrong nobody knows.
 TEST(Evidence, PrunesNoneOfAFewLoops) {
   Random random(37);

@@ -131,36 +131,39 @@ TYPED_TEST(ObjectiveOf, RisesByWhatALoopGains) {
   const auto near = objective.near(estimate.poses());
   // All of n against a given n - 1 of n by the Beta-binomial: n to 1.
   const double prior = std::log(static_cast<double>(loops));
-  EXPECT_NEAR(with - without, gain - objective.log_alternative(0, near, 1.0, 1.0) + prior, 0.3)
+  EXPECT_NEAR(with - without,
+              gain - objective.log_alternative(0, near, 1.0, Pose::Tangent::Ones()) + prior, 0.3)
       << "chance on the map with the loop, and on the one without";
 }
 
-// Covariances of rotation and translation come apart by the ratio, in every edge, and determinants
-// stay. That of a chain's normal equations is the product of its steps', whose Jacobians have
-// unit determinant.
-TYPED_TEST(ObjectiveOf, ScalesRotationAgainstTranslation) {
+// Each coordinate's variances by its factor, of odometry and of loops, and determinants stay. That
+// of a chain's normal equations is the product of its steps', whose Jacobians have unit
+// determinant.
+TYPED_TEST(ObjectiveOf, ScalesEachCoordinate) {
   using Pose = TypeParam;
-  constexpr int kDim = Pose::kDim;
-  constexpr int kTurns = Pose::kDof - kDim;
   Random random(10);
   const auto made = random_loop_graph<Pose>(random, 30, 10, 1.0);
   const auto roles = edge_roles(made.graph);
-  const auto stated = scaled_graph(made.graph, roles, 1.0);
-  const auto scaled = scaled_graph(made.graph, roles, 7.0);
+  Shapes<Pose> shapes;
+  shapes.odometry[0] = 5.0;
+  shapes.odometry[1] = 0.2;
+  shapes.loops[Pose::kDof - 1] = 7.0;
+  shapes.loops[0] = 1.0 / 7.0;
+  const auto stated = scaled_graph(made.graph, roles, Shapes<Pose>());
+  const auto scaled = scaled_graph(made.graph, roles, shapes);
   double steps = 0.0;
   for (const auto& step : scaled.reduced.steps) steps += std::log(step.information.determinant());
   EXPECT_NEAR(scaled.log_determinant, steps, 1e-6 * std::abs(steps));
+  EXPECT_NEAR(scaled.log_determinant, stated.log_determinant, 1e-6 * std::abs(steps));
   EXPECT_EQ(scaled.variables, stated.variables);
+  const typename Pose::Tangent root = shapes.loops.cwiseSqrt();
   for (std::size_t k = 0; k < stated.reduced.loops.size(); ++k) {
-    const auto& before = stated.reduced.loops[k].covariance;
-    const auto& after = scaled.reduced.loops[k].covariance;
-    const double translation = after.template topLeftCorner<kDim, kDim>().trace() /
-                               before.template topLeftCorner<kDim, kDim>().trace();
-    const double rotation = after.template bottomRightCorner<kTurns, kTurns>().trace() /
-                            before.template bottomRightCorner<kTurns, kTurns>().trace();
-    EXPECT_NEAR(rotation / translation, 7.0, 1e-9);
-    EXPECT_NEAR(after.determinant() / before.determinant(), 1.0, 1e-9);
+    const typename Pose::Matrix expected =
+        root.asDiagonal() * stated.reduced.loops[k].covariance * root.asDiagonal();
+    EXPECT_LT((scaled.reduced.loops[k].covariance - expected).norm(), 1e-9 * expected.norm());
   }
+  EXPECT_NEAR(rotation_against_translation<Pose>(shapes.loops),
+              std::pow(7.0, 1.0 / (Pose::kDof - Pose::kDim) + 1.0 / Pose::kDim), 1e-9);
 }
 
 // A loop of a graph that shrinks to a point is near everything.

@@ -36,7 +36,7 @@ CovarianceScale variance_components(const ReducedGraph<Pose>& graph, const Estim
   const auto constraints = static_cast<double>(graph.steps.size() + loops.size());
   const auto unknowns = static_cast<double>(graph.node_count() - estimate.component_count());
   const double redundancy = Pose::kDof * (constraints - unknowns);
-  return {over_redundancy(estimate.odometry_cost(), redundancy - loop_redundancy, scale.odometry),
+  return {over_redundancy(estimate.odometry_cost().sum(), redundancy - loop_redundancy, scale.odometry),
           over_redundancy(loop_cost, weighted_redundancy, scale.loops)};
 }
 

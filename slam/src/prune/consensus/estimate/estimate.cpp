@@ -99,6 +99,11 @@ bool Estimate<Pose>::connected(const Link<Pose>& loop) const {
   return component_[loop.a] == component_[loop.b];
 }
 
+template <class Pose>
+std::pair<Index, Index> Estimate<Pose>::parts(const Link<Pose>& loop) const {
+  return {component_[loop.a], component_[loop.b]};
+}
+
 // d(T_a^-1 T_b) = -Ad d_a + d_b, with Ad the adjoint of T_b_a.
 template <class Pose>
 std::vector<typename Pose::Matrix> Estimate<Pose>::relative_covariances(
@@ -125,11 +130,11 @@ std::vector<typename Pose::Matrix> Estimate<Pose>::relative_covariances(
 }
 
 template <class Pose>
-double Estimate<Pose>::odometry_cost() const {
-  double cost = 0.0;
+typename Pose::Tangent Estimate<Pose>::odometry_cost() const {
+  Tangent cost = Tangent::Zero();
   for (const auto& step : graph_.steps) {
     const Tangent r = residual(step);
-    cost += r.dot(step.information * r);
+    cost += r.cwiseProduct(step.information * r);
   }
   return cost;
 }

@@ -39,7 +39,7 @@ void Assessment<Pose>::restore(const Explanation<Pose>& before) {
 
 template <class Pose>
 void Assessment<Pose>::assess(Explanation<Pose>& now) {
-  rescale(now.rotation);
+  rescale(now.shapes);
   mixture_ = expected_mixture(now.scale.loops, now.shares);
   find_peak(now);
   near_ = objective_.near(estimate_.poses());
@@ -51,10 +51,10 @@ void Assessment<Pose>::assess(Explanation<Pose>& now) {
 }
 
 template <class Pose>
-void Assessment<Pose>::rescale(double rotation) {
-  if (rotation == rotation_) return;
-  graph_ = objective_.scaled(rotation);
-  rotation_ = rotation;
+void Assessment<Pose>::rescale(const Shapes<Pose>& shapes) {
+  if (shapes == shapes_) return;
+  graph_ = objective_.scaled(shapes);
+  shapes_ = shapes;
   estimate_.restore(estimate_.layout());
   held_.clear();
 }
@@ -128,13 +128,14 @@ void Assessment<Pose>::bound(const Explanation<Pose>& now) {
   held_scale_ = now.scale.odometry;
 }
 
-// Of those that are hopeless even by their bound the covariance is not solved for.
+// Of those that are hopeless even under the best covariance within their bound it is not solved
+// for.
 template <class Pose>
 void Assessment<Pose>::weigh(Explanation<Pose>& now) {
   std::vector<Index> loops;
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
     const auto loop = static_cast<Index>(k);
-    if (!now.accepted[k]) standings_[k] = other_standing(now, loop);
+    if (!now.accepted[k]) standings_[k] = other_standing(now, loop, false);
     const bool hopeful = standings_[k].connected && standings_[k].evidence > -kHopeless;
     if (now.accepted[k] || hopeful) loops.push_back(loop);
   }
@@ -142,7 +143,7 @@ void Assessment<Pose>::weigh(Explanation<Pose>& now) {
   for (std::size_t i = 0; i < loops.size(); ++i) covariances_[loops[i]] = covariances[i];
   find_redundancy(now);
   for (const Index k : loops) {
-    standings_[k] = now.accepted[k] ? accepted_standing(now, k) : other_standing(now, k);
+    standings_[k] = now.accepted[k] ? accepted_standing(now, k) : other_standing(now, k, true);
   }
 }
 
@@ -161,13 +162,11 @@ void Assessment<Pose>::find_redundancy(Explanation<Pose>& now) const {
   now.redundancy = {};
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
     if (!now.accepted[k] || graph_.reduced.loops[k].a == graph_.reduced.loops[k].b) continue;
-    const auto own = redundancy(now, static_cast<Index>(k));
-    now.redundancy.translation += own.template head<Pose::kDim>().sum();
-    now.redundancy.rotation += own.template tail<Pose::kDof - Pose::kDim>().sum();
+    now.redundancy.loops += redundancy(now, static_cast<Index>(k));
     constraints += 1.0;
   }
-  const double all = Pose::kDof * (constraints - static_cast<double>(estimate_.variable_count()));
-  now.redundancy.odometry = std::max(all - now.redundancy.loops(), 0.0);
+  const double each = constraints - static_cast<double>(estimate_.variable_count());
+  now.redundancy.odometry = (each - now.redundancy.loops.array()).max(0.0);
 }
 
 // Given all loops but itself, in what is known of the accuracy of odometry, too.
@@ -177,10 +176,10 @@ Standing Assessment<Pose>::accepted_standing(const Explanation<Pose>& now, Index
   const auto prediction =
       predict_without<Pose>(estimate_.residual(link), covariances_[loop], link.covariance,
                             now.weights[loop] / now.scale.loops);
-  const double own = redundancy(now, loop).sum();
-  const Redundancy others{.odometry = std::max(now.redundancy.odometry - (Pose::kDof - own), 0.0),
-                          .translation = std::max(now.redundancy.loops() - own, 0.0),
-                          .rotation = 0.0};  // their sum matters here
+  const typename Pose::Tangent own = redundancy(now, loop);
+  const Redundancy<Pose> others{
+      .odometry = (now.redundancy.odometry.array() - (1.0 - own.array())).max(0.0),
+      .loops = (now.redundancy.loops - own).cwiseMax(0.0)};
   const auto gain = loop_gain<Pose>(prediction, mixture_, objective_.scale_deviation(others));
   // Alone it would join parts that lie anywhere on the map.
   const double density = std::max(gain.log_density, -objective_.log_volume() - 0.5 * gain.chi2);
@@ -188,13 +187,14 @@ Standing Assessment<Pose>::accepted_standing(const Explanation<Pose>& now, Index
 }
 
 template <class Pose>
-Standing Assessment<Pose>::other_standing(const Explanation<Pose>& now, Index loop) const {
+Standing Assessment<Pose>::other_standing(const Explanation<Pose>& now, Index loop,
+                                          bool solved) const {
   const auto& link = graph_.reduced.loops[loop];
-  Standing standing{.connected = estimate_.connected(link)};
+  Standing standing{.parts = estimate_.parts(link), .connected = estimate_.connected(link)};
   double density = -objective_.log_volume();
   if (standing.connected) {
-    const auto prediction =
-        predict<Pose>(estimate_.residual(link), covariances_[loop], link.covariance);
+    auto prediction = predict<Pose>(estimate_.residual(link), covariances_[loop], link.covariance);
+    if (!solved) prediction = at_best<Pose>(prediction, mixture_.scale);
     const auto gain =
         loop_gain<Pose>(prediction, mixture_, objective_.scale_deviation(now.redundancy));
     standing.chi2 = gain.chi2;

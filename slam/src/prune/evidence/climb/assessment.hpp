@@ -38,11 +38,11 @@ class Assessment {
 
   /// log of the density that a loop's is held against.
   double log_alternative(Index loop) const {
-    return objective_.log_alternative(loop, near_, mixture_.scale, rotation_);
+    return objective_.log_alternative(loop, near_, mixture_.scale, shapes_.loops);
   }
 
  private:
-  void rescale(double rotation);
+  void rescale(const Shapes<Pose>& shapes);
   void find_peak(Explanation<Pose>& now);
   bool reweigh(Explanation<Pose>& now);
   double uncertainty(const Explanation<Pose>& now, Index loop) const;
@@ -51,12 +51,12 @@ class Assessment {
   void weigh(Explanation<Pose>& now);
   void find_redundancy(Explanation<Pose>& now) const;
   Standing accepted_standing(const Explanation<Pose>& now, Index loop) const;
-  Standing other_standing(const Explanation<Pose>& now, Index loop) const;
+  Standing other_standing(const Explanation<Pose>& now, Index loop, bool solved) const;
   void add_prior(const std::vector<bool>& accepted);
 
   const Objective<Pose>& objective_;
   ScaledGraph<Pose> graph_;
-  double rotation_ = 1.0;  // that graph_ is scaled by
+  Shapes<Pose> shapes_;  // that graph_ is scaled by
   Estimate<Pose> estimate_;
   typename Estimate<Pose>::Layout odometry_;
   ScaleMixture mixture_;

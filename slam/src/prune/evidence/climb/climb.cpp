@@ -9,8 +9,12 @@
 namespace isotherm::slam::detail {
 namespace {
 
-constexpr double kBetter = 0.1;  // nats by which an explanation must be better to go on
-constexpr int kPatience = 8;     // moves in a row that may find nothing better
+// Nats by which an explanation must be better to go on, and nats a loop for a lesson to matter.
+constexpr double kBetter = 0.1;
+constexpr double kTelling = 1e-3;
+constexpr int kPatience = 8;  // moves in a row that may find nothing better
+constexpr std::size_t kMoreTelling =
+    2;  // times as many loops have more to tell of how accurate they are
 
 }  // namespace
 
@@ -51,6 +55,7 @@ void Climb<Pose>::start(const CovarianceScale& scale) {
   now_.shares.loops[0] = static_cast<double>(loops);
   now_.weights.assign(loops, 1.0);
   dropped_.assign(loops, false);
+  learnt_from_ = 0;
   assessment_.start_over();
   assessment_.assess(now_);
   predict_runs();
@@ -82,15 +87,22 @@ void Climb<Pose>::grow() {
 template <class Pose>
 bool Climb<Pose>::move() {
   const Selection out = misfits();
-  if (out.empty()) {
-    const Selection batch = next_batch();
-    if (batch.empty() && seen_before()) return false;
-    if (batch.empty()) return learn_more_than(0.0);
-    accept(batch);
-  } else if (!learn_more_than(gain_of_dropping(out))) {
-    drop(out);
+  const Group batch = next_batch();
+  const double dropping = gain_of_dropping(out);
+  if (accepted_count() >= kMoreTelling * learnt_from_ && learn_more_than(dropping)) return true;
+  if (!batch.loops.empty() && batch.gain > dropping) {
+    accept(batch.loops);
+  } else if (!out.empty()) {
+    if (!learn_more_than(dropping)) drop(out);
+  } else {
+    return !seen_before() && learn_more_than(0.0);
   }
   return true;
+}
+
+template <class Pose>
+std::size_t Climb<Pose>::accepted_count() const {
+  return static_cast<std::size_t>(std::ranges::count(now_.accepted, true));
 }
 
 template <class Pose>
@@ -136,14 +148,14 @@ void Climb<Pose>::drop(const Selection& loops) {
 }
 
 template <class Pose>
-typename Climb<Pose>::Selection Climb<Pose>::next_batch() const {
+Group Climb<Pose>::next_batch() const {
   std::vector<bool> open(dropped_.size());
   for (std::size_t k = 0; k < open.size(); ++k) {
     open[k] = !now_.accepted[k] && !dropped_[k];
   }
   auto groups = gaining_groups(objective_.runs(), open, assessment_.standings(), run_density_,
                                [&](Index k) { return assessment_.log_alternative(k); });
-  return most_certain(std::move(groups));
+  return most_certain(std::move(groups), accepted_count());
 }
 
 template <class Pose>
@@ -157,16 +169,18 @@ void Climb<Pose>::accept(const Selection& loops) {
 template <class Pose>
 bool Climb<Pose>::learn_more_than(double gain) {
   if (!options_.calibrate) return false;
-  const Lesson lesson = learn(assessment_, now_);
-  return lesson.gain > std::max(gain, kBetter) && try_lesson(lesson);
+  learnt_from_ = std::max<std::size_t>(accepted_count(), 1);
+  const Lesson<Pose> lesson = learn(assessment_, now_);
+  const double least = std::max(kBetter, kTelling * static_cast<double>(accepted_count()));
+  return lesson.gain > std::max(gain, least) && try_lesson(lesson);
 }
 
 // Whether it is better. Scales at which the normal equations break down explain nothing.
 template <class Pose>
-bool Climb<Pose>::try_lesson(const Lesson& lesson) {
+bool Climb<Pose>::try_lesson(const Lesson<Pose>& lesson) {
   const Explanation<Pose> before = now_;
   now_.scale = lesson.scale;
-  now_.rotation = lesson.rotation;
+  now_.shapes = lesson.shapes;
   now_.shares = lesson.shares;
   bool better = false;
   try {

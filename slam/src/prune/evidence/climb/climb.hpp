@@ -5,6 +5,7 @@
 
 #include "isotherm/slam/prune/evidence.hpp"
 #include "prune/evidence/climb/assessment.hpp"
+#include "prune/evidence/climb/groups.hpp"
 #include "prune/evidence/climb/learn.hpp"
 
 namespace isotherm::slam::detail {
@@ -42,13 +43,14 @@ class Climb {
   void grow();
   bool move();
   void assess();
+  std::size_t accepted_count() const;
   Selection misfits() const;
   double gain_of_dropping(const Selection& loops) const;
   void drop(const Selection& loops);
-  Selection next_batch() const;
+  Group next_batch() const;
   void accept(const Selection& loops);
   bool learn_more_than(double gain);
-  bool try_lesson(const Lesson& lesson);
+  bool try_lesson(const Lesson<Pose>& lesson);
   void predict_runs();
   void note(std::size_t accepted, std::size_t dropped);
   void tell_progress() const;
@@ -62,6 +64,7 @@ class Climb {
   std::vector<double> run_density_;    // log p(z | the loop before in its run)
   std::set<std::vector<bool>> peaks_;  // loops with which climbs ended
   std::vector<bool> dropped_;          // since the climb last rose; not tried again
+  std::size_t learnt_from_ = 0;        // loops, at the last lesson
   std::vector<EvidenceMove> moves_;
   bool settled_ = true;
 };

@@ -10,8 +10,14 @@
 namespace isotherm::slam::detail {
 namespace {
 
-// Groups accepted at once are all true with even odds at least.
+// Groups accepted at once are all true with even odds at least, or false as rarely as one in many
+// of those in force, of which each move drops what does not fit.
 constexpr double kMostExpectedFalse = 0.5;
+constexpr double kFalseShare = 1e-3;
+
+// Every loop accepted sharpens what is predicted of the rest and tells how accurate they are.
+constexpr std::size_t kGrowth = 3;
+constexpr std::size_t kFew = 10;  // loops, that tell nothing of it
 
 template <class Pose>
 std::vector<std::vector<Index>> runs_of(const Runs<Pose>& runs, const std::vector<bool>& open,
@@ -36,6 +42,17 @@ std::vector<std::vector<Index>> runs_of(const Runs<Pose>& runs, const std::vecto
   return groups;
 }
 
+// Each part by itself, by its number.
+std::vector<Index> numbered_parts(const std::vector<Group>& groups) {
+  Index count = 0;
+  for (const Group& group : groups) {
+    count = std::max({count, group.parts.first + 1, group.parts.second + 1});
+  }
+  std::vector<Index> parent(count);
+  std::iota(parent.begin(), parent.end(), 0);
+  return parent;
+}
+
 }  // namespace
 
 template <class Pose>
@@ -56,24 +73,34 @@ std::vector<Group> gaining_groups(const Runs<Pose>& runs, const std::vector<bool
       }
       gain += evidence;
     }
-    if (gain > 0.0) gaining.push_back({std::move(loops), gain, standings[seed].connected});
+    if (gain > 0.0) {
+      gaining.push_back({std::move(loops), gain, standings[seed].connected, standings[seed].parts});
+    }
   }
   return gaining;
 }
 
-std::vector<Index> most_certain(std::vector<Group> groups) {
-  const bool any_connected =
-      std::ranges::any_of(groups, [](const Group& group) { return group.connected; });
-  if (any_connected) std::erase_if(groups, [](const Group& group) { return !group.connected; });
+Group most_certain(std::vector<Group> groups, std::size_t accepted) {
   std::ranges::stable_sort(groups, std::greater{}, &Group::gain);
-  std::vector<Index> loops;
+  Group all;
+  std::vector<Index> part = numbered_parts(groups);
   double expected_false = 0.0;
-  for (const auto& [members, gain, connected] : groups) {
+  const double most_false =
+      std::max(kMostExpectedFalse, kFalseShare * static_cast<double>(accepted));
+  for (const auto& [members, gain, connected, parts] : groups) {
     expected_false += 1.0 / (1.0 + std::exp(gain));
-    if (!loops.empty() && (!connected || expected_false > kMostExpectedFalse)) break;
-    loops.insert(loops.end(), members.begin(), members.end());
+    const bool many = all.loops.size() + members.size() > kGrowth * std::max(accepted, kFew);
+    if (!all.loops.empty() && (many || expected_false > most_false)) break;
+    if (!connected) {
+      const Index first = find_root(part, parts.first);
+      const Index second = find_root(part, parts.second);
+      if (first == second) continue;
+      part[first] = second;
+    }
+    all.loops.insert(all.loops.end(), members.begin(), members.end());
+    all.gain += gain;
   }
-  return loops;
+  return all;
 }
 
 template std::vector<Group> gaining_groups(const Runs<Pose2>&, const std::vector<bool>&,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "prune/evidence/climb/standing.hpp"
@@ -12,7 +13,8 @@ namespace isotherm::slam::detail {
 struct Group {
   std::vector<Index> loops;  ///< ascending
   double gain = 0.0;
-  bool connected = false;  ///< to a part of the map that its other ends are on
+  bool connected = false;         ///< to a part of the map that its other ends are on
+  std::pair<Index, Index> parts;  ///< of the map that its first loop joins
 };
 
 /// The `open` loops in groups of those that the loop before in their run predicts better than
@@ -25,8 +27,9 @@ std::vector<Group> gaining_groups(const Runs<Pose>& runs, const std::vector<bool
                                   const std::vector<double>& run_density,
                                   const std::function<double(Index)>& alternative);
 
-/// The loops of the groups that gain most, as many as are likely all true; of groups that nothing
-/// connects to the map only the first, and only where there are no others.
-std::vector<Index> most_certain(std::vector<Group> groups);
+/// The groups that gain most as one, as many as are likely all true and not many more than
+/// `accepted`, those in force; of groups that nothing connects to the map those that join
+/// parts that no better one joins already.
+Group most_certain(std::vector<Group> groups, std::size_t accepted);
 
 }  // namespace isotherm::slam::detail

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "prune/evidence/objective/scale_prior.hpp"
@@ -11,52 +13,80 @@ namespace {
 
 // Beyond, double precision has no digits left for the rest of the graph.
 const double kMostScale = std::log(1e8);
-constexpr int kRepetitions = 10;  // of expectation maximisation, from the prior
+// Of a coordinate against the others: a deviation of the prior. Contracted odometry is no longer
+// linear within deviations that are farther apart.
+constexpr double kMostOwn = kScaleDeviation;
+constexpr double kLeastRedundancy = 1e-6;  // less is rounding
+constexpr int kRepetitions = 10;           // of expectation maximisation, from the prior
 
-// The likeliest factor where the evidence has its peak at `factor` with curvature redundancy / 2
-// of the log, drawn towards 1 by the prior.
-double drawn_in(double factor, double redundancy) {
+// The log of the likeliest factor on variances of this cost and redundancy, to first order about
+// cost over redundancy, drawn towards zero by the prior. Of nothing redundant nothing is told.
+double drawn_in(double cost, double redundancy) {
+  if (redundancy < kLeastRedundancy) return 0.0;
   const double precision = 0.5 * redundancy;
-  const double peak =
-      std::log(factor) * precision / (precision + 1.0 / (kScaleDeviation * kScaleDeviation));
-  return std::exp(std::clamp(peak, -kMostScale, kMostScale));
+  const double least = -2.0 * kMostScale;
+  const double peak = cost > 0.0 ? std::max(std::log(cost / redundancy), least) : least;
+  return peak * precision / (precision + 1.0 / (kScaleDeviation * kScaleDeviation));
 }
 
-/// Of one kind of measurement.
+/// Measurements of one kind, by coordinate.
+template <class Tangent>
 struct Component {
-  double cost = 0.0;  // in the file's units
-  double redundancy = 0.0;
+  Tangent cost;  // in the file's units
+  Tangent redundancy;
 
-  double evidence(double scale) const {
-    return -0.5 * (cost / scale + redundancy * std::log(scale)) + log_scale_prior(scale);
+  double evidence(const Tangent& logs) const {
+    return -0.5 * (cost.dot((-logs).array().exp().matrix()) + redundancy.dot(logs)) +
+           log_scale_peak(logs, redundancy);
   }
 
-  double likeliest(double before) const {
-    return redundancy < 1.0 || !(cost > 0.0) ? before : drawn_in(cost / redundancy, redundancy);
+  // Logs of the factors where the evidence has its peak.
+  Tangent likeliest(const Tangent& before) const {
+    if (redundancy.sum() < 1.0 || !(cost.sum() > 0.0)) return before;
+    const double common = drawn_in(cost.sum(), redundancy.sum());
+    const Tangent one = Tangent::Constant(std::clamp(common, -kMostScale, kMostScale));
+    const Tangent each = by_coordinate();
+    return evidence(each) > evidence(one) ? each : one;
+  }
+
+ private:
+  // A factor of all coordinates and one of each take turns. One that is as small as it may be tells
+  // nothing of the others: across the floor that a robot drives on, nothing is measured.
+  Tangent by_coordinate() const {
+    double common = 0.0;
+    Tangent own = Tangent::Zero();
+    for (int k = 0; k < kRepetitions; ++k) {
+      const Tangent telling = (own.array() > -kMostOwn).template cast<double>();
+      common = drawn_in(cost.cwiseProduct(telling).dot((-own).array().exp().matrix()),
+                        redundancy.dot(telling));
+      for (Eigen::Index d = 0; d < own.size(); ++d) {
+        const double likeliest = drawn_in(cost[d] * std::exp(-common), redundancy[d]);
+        own[d] = std::clamp(likeliest, -kMostOwn, kMostOwn);
+      }
+    }
+    return (common + own.array()).max(-kMostScale).min(kMostScale);
   }
 };
 
 /// Of a loop.
+template <class Pose>
 struct Residual {
-  double chi2() const { return translation + rotation; }
+  double chi2() const { return parts.sum(); }
 
-  double translation = 0.0;  // parts of chi-squared, in the file's units
-  double rotation = 0.0;
+  typename Pose::Tangent parts;  // of chi-squared, by coordinate, in the file's units
   double redundancy = 0.0;
   double weight = 1.0;
 };
 
 template <class Pose>
-std::vector<Residual> residuals_of(const Assessment<Pose>& assessment,
-                                   const Explanation<Pose>& explanation) {
-  std::vector<Residual> residuals;
+std::vector<Residual<Pose>> residuals_of(const Assessment<Pose>& assessment,
+                                         const Explanation<Pose>& explanation) {
+  std::vector<Residual<Pose>> residuals;
   for (std::size_t k = 0; k < explanation.accepted.size(); ++k) {
     const auto& loop = assessment.graph().loops[k];
     if (!explanation.accepted[k] || loop.a == loop.b) continue;
     const typename Pose::Tangent r = assessment.estimate().residual(loop);
-    const typename Pose::Tangent chi2 = r.cwiseProduct(loop.information * r);
-    const double translation = chi2.template head<Pose::kDim>().sum();
-    residuals.push_back({translation, chi2.sum() - translation,
+    residuals.push_back({r.cwiseProduct(loop.information * r),
                          assessment.redundancy(explanation, static_cast<Index>(k)).sum(),
                          explanation.weights[k]});
   }
@@ -64,28 +94,29 @@ std::vector<Residual> residuals_of(const Assessment<Pose>& assessment,
 }
 
 // A residual counts as far as it is redundant: the rest of it was fitted.
-ScaleShares likeliest_shares(const std::vector<Residual>& residuals, double scale, int dof) {
+template <class Pose>
+ScaleShares likeliest_shares(const std::vector<Residual<Pose>>& residuals, double scale) {
   ScaleShares shares;
   for (int k = 0; k < kRepetitions; ++k) {
     const ScaleMixture mixture = expected_mixture(scale, shares);
     shares = {};
-    for (const Residual& residual : residuals) {
+    for (const auto& residual : residuals) {
       const ErrorScale error = error_scale(mixture, residual.chi2() / scale, residual.redundancy);
       for (std::size_t j = 0; j < kScaleCount; ++j) {
-        shares.loops[j] += error.probability[j] * residual.redundancy / dof;
+        shares.loops[j] += error.probability[j] * residual.redundancy / Pose::kDof;
       }
     }
   }
   return shares;
 }
 
-double log_likelihood(const ScaleMixture& mixture, const std::vector<Residual>& residuals) {
-  double sum = log_scale_prior(mixture.scale);
-  for (const Residual& residual : residuals) {
+template <class Pose>
+double log_likelihood(const ScaleMixture& mixture, const std::vector<Residual<Pose>>& residuals) {
+  double sum = 0.0;
+  for (const auto& residual : residuals) {
     const double chi2 = residual.chi2() / mixture.scale;
     const ErrorScale error = error_scale(mixture, chi2, residual.redundancy);
-    sum += error.evidence -
-           0.5 * (error.weight * chi2 + residual.redundancy * std::log(mixture.scale));
+    sum += error.evidence - 0.5 * error.weight * chi2;
     for (std::size_t j = 0; j < kScaleCount; ++j) {
       sum += error.probability[j] * mixture.log_share[j];
     }
@@ -93,54 +124,46 @@ double log_likelihood(const ScaleMixture& mixture, const std::vector<Residual>& 
   return sum;
 }
 
-// The ratio of rotation's scale to translation's under which the loops are likeliest.
-double likeliest_ratio(const std::vector<Residual>& residuals, const Redundancy& redundancy,
-                       double before) {
-  double translation = 0.0;
-  double rotation = 0.0;
-  for (const Residual& residual : residuals) {
-    translation += residual.weight * residual.translation;
-    rotation += residual.weight * residual.rotation;
-  }
-  const bool known = redundancy.translation >= 1.0 && redundancy.rotation >= 1.0 &&
-                     translation > 0.0 && rotation > 0.0;
-  if (!known) return before;
-  return drawn_in(
-      before * (rotation / redundancy.rotation) / (translation / redundancy.translation),
-      redundancy.ratio());
+template <class Tangent>
+std::pair<double, Tangent> scale_and_shape(const Tangent& logs) {
+  return {std::exp(logs.mean()), (logs.array() - logs.mean()).exp()};
 }
 
 }  // namespace
 
 template <class Pose>
-Lesson learn(const Assessment<Pose>& assessment, const Explanation<Pose>& explanation) {
-  const CovarianceScale& before = explanation.scale;
-  const Redundancy& redundancy = explanation.redundancy;
+Lesson<Pose> learn(const Assessment<Pose>& assessment, const Explanation<Pose>& explanation) {
+  using Tangent = typename Pose::Tangent;
+  const auto& [scale, shapes, redundancy] =
+      std::tie(explanation.scale, explanation.shapes, explanation.redundancy);
   auto residuals = residuals_of(assessment, explanation);
-  const double fit_before =
-      log_likelihood(expected_mixture(before.loops, explanation.shares), residuals);
+  Tangent loops_cost = Tangent::Zero();
+  for (const auto& residual : residuals) loops_cost += residual.weight * residual.parts;
+  const Tangent odometry_cost = assessment.estimate().odometry_cost();
+  const Component<Tangent> odometry{odometry_cost.cwiseProduct(shapes.odometry),
+                                    redundancy.odometry};
+  const Component<Tangent> loops{loops_cost.cwiseProduct(shapes.loops), redundancy.loops};
+  const Tangent odometry_before = log_scales(scale.odometry, shapes.odometry);
+  const Tangent loops_before = log_scales(scale.loops, shapes.loops);
+  const Tangent odometry_now = odometry.likeliest(odometry_before);
+  const Tangent loops_now = loops.likeliest(loops_before);
 
-  Lesson lesson{.rotation = likeliest_ratio(residuals, redundancy, explanation.rotation)};
-  const PartScales<Pose> parts(lesson.rotation / explanation.rotation);
-  Component loops = {0.0, redundancy.loops()};
-  for (Residual& residual : residuals) {
-    residual.translation /= parts.translation;
-    residual.rotation /= parts.rotation;
-    loops.cost += residual.weight * residual.chi2();
-  }
-  const Component odometry = {assessment.estimate().odometry_cost(), redundancy.odometry};
-  lesson.scale = {odometry.likeliest(before.odometry), loops.likeliest(before.loops)};
-  lesson.shares = likeliest_shares(residuals, lesson.scale.loops, Pose::kDof);
-  lesson.gain = odometry.evidence(lesson.scale.odometry) - odometry.evidence(before.odometry) +
-                log_likelihood(expected_mixture(lesson.scale.loops, lesson.shares), residuals) -
-                fit_before -
-                0.5 * (redundancy.translation * std::log(parts.translation) +
-                       redundancy.rotation * std::log(parts.rotation)) +
-                log_scale_prior(lesson.rotation) - log_scale_prior(explanation.rotation);
+  Lesson<Pose> lesson;
+  std::tie(lesson.scale.odometry, lesson.shapes.odometry) = scale_and_shape(odometry_now);
+  std::tie(lesson.scale.loops, lesson.shapes.loops) = scale_and_shape(loops_now);
+  lesson.gain = odometry.evidence(odometry_now) - odometry.evidence(odometry_before) +
+                log_scale_peak(loops_now, redundancy.loops) -
+                log_scale_peak(loops_before, redundancy.loops) -
+                0.5 * redundancy.loops.dot(loops_now - loops_before) -
+                log_likelihood(expected_mixture(scale.loops, explanation.shares), residuals);
+  const Tangent change = lesson.shapes.loops.cwiseQuotient(shapes.loops);
+  for (auto& residual : residuals) residual.parts = residual.parts.cwiseQuotient(change);
+  lesson.shares = likeliest_shares(residuals, lesson.scale.loops);
+  lesson.gain += log_likelihood(expected_mixture(lesson.scale.loops, lesson.shares), residuals);
   return lesson;
 }
 
-template Lesson learn(const Assessment<Pose2>&, const Explanation<Pose2>&);
-template Lesson learn(const Assessment<Pose3>&, const Explanation<Pose3>&);
+template Lesson<Pose2> learn(const Assessment<Pose2>&, const Explanation<Pose2>&);
+template Lesson<Pose3> learn(const Assessment<Pose3>&, const Explanation<Pose3>&);
 
 }  // namespace isotherm::slam::detail

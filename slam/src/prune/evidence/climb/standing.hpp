@@ -1,13 +1,18 @@
 #pragma once
 
+#include <utility>
+
+#include "isotherm/slam/graph/pose_graph.hpp"
+
 namespace isotherm::slam::detail {
 
 /// How a loop stands under an explanation.
 struct Standing {
-  bool connected = false;  ///< odometry or other accepted loops join its ends
-  double chi2 = 0.0;       ///< against what they predict
-  double evidence = 0.0;   ///< log of how much likelier true than false, without the prior
-  double log_odds = 0.0;   ///< of true, with the prior
+  std::pair<Index, Index> parts;  ///< of the map, by number, that its ends lie on
+  bool connected = false;         ///< odometry or other accepted loops join its ends
+  double chi2 = 0.0;              ///< against what they predict
+  double evidence = 0.0;          ///< log of how much likelier true than false, without the prior
+  double log_odds = 0.0;          ///< of true, with the prior
 };
 
 }  // namespace isotherm::slam::detail

@@ -1,6 +1,7 @@
 #include "prune/evidence/objective/objective.hpp"
 
 #include <cmath>
+#include <tuple>
 
 #include <Eigen/Cholesky>
 
@@ -22,7 +23,7 @@ Objective<Pose>::Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                            bool calibrate)
     : graph_(graph),
       roles_(roles),
-      stated_(scaled(1.0)),
+      stated_(scaled({})),
       near_(stated_.reduced),
       runs_(stated_.reduced, window),
       calibrate_(calibrate) {
@@ -35,10 +36,10 @@ Objective<Pose>::Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
 
 template <class Pose>
 double Objective<Pose>::log_alternative(Index loop, const NearByClass& near, double loop_scale,
-                                        double rotation) const {
+                                        const typename Pose::Tangent& shape) const {
   if (!runs_.copied(loop)) {
     return near[proposal_class(stated_.reduced, loop)] +
-           near_.log_false_density(loop, loop_scale * PartScales<Pose>(rotation).by_coordinate());
+           near_.log_false_density(loop, loop_scale * shape);
   }
   const double log_sigma = log_sigma_[loop] + Pose::kDof * std::log(loop_scale);
   return -0.5 * (log_sigma + Pose::kDof * kLog2Pi) - Pose::kDof;
@@ -70,29 +71,32 @@ double Objective<Pose>::evidence(const Explanation<Pose>& explanation,
   double kept = 0.0;
   for (std::size_t k = 0; k < explanation.accepted.size(); ++k) {
     if (!explanation.accepted[k]) continue;
-    alternatives += log_alternative(static_cast<Index>(k), near, scale.loops, explanation.rotation);
+    alternatives +=
+        log_alternative(static_cast<Index>(k), near, scale.loops, explanation.shapes.loops);
     kept += 1.0;
   }
   const double odometry_determinant =
       graph.log_determinant - Pose::kDof * graph.variables * std::log(scale.odometry);
   const auto joined = static_cast<double>(estimate.variable_count() - graph.variables);
-  return loops_fit(explanation, graph, estimate) - 0.5 * estimate.odometry_cost() / scale.odometry -
+  return loops_fit(explanation, graph, estimate) -
+         0.5 * estimate.odometry_cost().sum() / scale.odometry -
          0.5 * (estimate.log_determinant() - odometry_determinant) +
          joined * (0.5 * Pose::kDof * kLog2Pi - log_volume_) - alternatives +
          log_beta_binomial(kept, static_cast<double>(explanation.accepted.size())) +
-         log_scales(explanation);
+         log_scale_peak(explanation);
 }
 
 // log of the prior at the scales times the width of the peak there.
 template <class Pose>
-double Objective<Pose>::log_scales(const Explanation<Pose>& explanation) const {
+double Objective<Pose>::log_scale_peak(const Explanation<Pose>& explanation) const {
   if (!calibrate_) return 0.0;
-  const auto peak = [](double scale, double redundancy) {
-    return log_scale_prior(scale) + std::log(detail::scale_deviation(redundancy) / kScaleDeviation);
+  const auto peak = [](double scale, const auto& shape, const auto& redundancy) {
+    return detail::log_scale_peak(log_scales(scale, shape), redundancy);
   };
-  return peak(explanation.scale.odometry, explanation.redundancy.odometry) +
-         peak(explanation.scale.loops, explanation.redundancy.loops()) +
-         peak(explanation.rotation, explanation.redundancy.ratio());
+  const auto& [scale, shapes, redundancy] =
+      std::tie(explanation.scale, explanation.shapes, explanation.redundancy);
+  return peak(scale.odometry, shapes.odometry, redundancy.odometry) +
+         peak(scale.loops, shapes.loops, redundancy.loops);
 }
 
 template class Objective<Pose2>;

@@ -13,28 +13,24 @@
 namespace isotherm::slam::detail {
 
 /// How many of the numbers measured are left to tell how accurate they are.
+template <class Pose>
 struct Redundancy {
-  double odometry = 0.0;
-  double translation = 0.0;  ///< of loops
-  double rotation = 0.0;     ///< of loops
-
-  double loops() const { return translation + rotation; }
-  /// That of the ratio of the two accuracies.
-  double ratio() const { return loops() > 0.0 ? translation * rotation / loops() : 0.0; }
+  typename Pose::Tangent odometry = Pose::Tangent::Zero();  ///< by coordinate
+  typename Pose::Tangent loops = Pose::Tangent::Zero();     ///< of those accepted
 };
 
 /// What explains the measurements: which loops are true, and how accurate everything is.
 /// A plain value; a trial is a copy.
 template <class Pose>
 struct Explanation {
-  std::vector<bool> accepted;   ///< one a loop
-  CovarianceScale scale;        ///< factors on the stated covariances; of loops, that of most
-  double rotation = 1.0;        ///< factor on covariances of rotation against translation's
+  std::vector<bool> accepted;  ///< one a loop
+  CovarianceScale scale;       ///< factors on the stated covariances; of loops, that of most
+  Shapes<Pose> shapes;
   ScaleShares shares;           ///< of loops as accurate as most and as stated, as believed
   ScaleShares found;            ///< the same, as found among the accepted ones
   std::vector<double> weights;  ///< of the loops' information, by their scales; one a loop
   double scale_evidence = 0.0;  ///< ErrorScale::evidence, summed over the accepted ones
-  Redundancy redundancy;        ///< of odometry and of the accepted loops
+  Redundancy<Pose> redundancy;  ///< of odometry and of the accepted loops
   typename Estimate<Pose>::Layout layout;
   double evidence = 0.0;  ///< Objective::evidence()
 };
@@ -46,8 +42,8 @@ struct Explanation {
 ///
 /// with p by Laplace's approximation from the factor that the estimate holds, f and k as in
 /// NearDensity, pi(A) the Beta-binomial of a fraction of which nothing is known. The scales are
-/// log-normal around what the file states, a factor of ten in the standard deviation being one
-/// deviation, and integrated over by Laplace's approximation. Which loops are as accurate as most
+/// log-normal around what the file states (scale_prior.hpp) and integrated over by Laplace's
+/// approximation. Which loops are as accurate as most
 /// and which as stated (ScaleShares) is integrated out by variational Bayes (Bishop, Pattern
 /// Recognition and Machine Learning, 10.1), which gives a lower bound. A part that A joins to
 /// another lies anywhere on the map.
@@ -65,7 +61,9 @@ class Objective {
 
   /// As stated.
   const ScaledGraph<Pose>& stated() const noexcept { return stated_; }
-  ScaledGraph<Pose> scaled(double ratio) const { return scaled_graph(graph_, roles_, ratio); }
+  ScaledGraph<Pose> scaled(const Shapes<Pose>& shapes) const {
+    return scaled_graph(graph_, roles_, shapes);
+  }
   const Runs<Pose>& runs() const noexcept { return runs_; }
 
   /// log k_mean of each class of loops on the map with nodes at `poses`.
@@ -75,13 +73,13 @@ class Objective {
   /// copies the measurement of the one before it in its run, that of a copy, so that a group
   /// of copies counts as one draw.
   double log_alternative(Index loop, const NearByClass& near, double loop_scale,
-                         double rotation) const;
+                         const typename Pose::Tangent& shape) const;
 
   /// Of the logs of the factors on covariances that measurements of this redundancy tell.
-  CovarianceScale scale_deviation(const Redundancy& redundancy) const {
+  CovarianceScale scale_deviation(const Redundancy<Pose>& redundancy) const {
     if (!calibrate_) return {0.0, 0.0};
-    return {detail::scale_deviation(redundancy.odometry),
-            detail::scale_deviation(redundancy.loops())};
+    return {detail::scale_deviation(redundancy.odometry.sum()),
+            detail::scale_deviation(redundancy.loops.sum())};
   }
 
   /// log of the volume of relative poses that the map of odometry allows.
@@ -92,7 +90,7 @@ class Objective {
                   const Estimate<Pose>& estimate, const NearByClass& near) const;
 
  private:
-  double log_scales(const Explanation<Pose>& explanation) const;
+  double log_scale_peak(const Explanation<Pose>& explanation) const;
   double loops_fit(const Explanation<Pose>& explanation, const ScaledGraph<Pose>& graph,
                    const Estimate<Pose>& estimate) const;
 

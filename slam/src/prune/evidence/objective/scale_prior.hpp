@@ -1,24 +1,46 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/Core>
+
 namespace isotherm::slam::detail {
 
-/// Deviation of the log of a factor on covariances: that of a factor of ten in sigma.
+// How much more or less accurate measurements are than their file states: with even odds by one
+// factor on all variances, or by one on that of each coordinate, whose log is the sum of two
+// normal ones around zero, one of all coordinates and one of each.
+
+/// Deviation of each: that of a factor of ten in sigma.
 inline constexpr double kScaleDeviation = 2.0 * std::numbers::ln10;
 
-/// Up to a constant.
-inline double log_scale_prior(double scale) {
-  const double deviations = std::log(scale) / kScaleDeviation;
-  return -0.5 * deviations * deviations;
-}
-
-/// Deviation of the log of a factor that measurements of this redundancy tell, too: their
-/// likelihood has curvature redundancy / 2 at its peak (Laplace).
+/// Deviation of the log of a factor of all coordinates that measurements of this redundancy tell.
 inline double scale_deviation(double redundancy) {
   return 1.0 / std::sqrt(0.5 * redundancy + 1.0 / (kScaleDeviation * kScaleDeviation));
+}
+
+/// Logs of the factors on the variances of coordinates, `scale` times those of `shape`.
+template <class Tangent>
+Tangent log_scales(double scale, const Tangent& shape) {
+  return std::log(scale) + shape.array().log();
+}
+
+/// log of the prior's density at these, times the width of the posterior's peak, where measurements
+/// of this redundancy tell: their likelihood has curvature redundancy / 2 (Laplace).
+template <class Tangent>
+double log_scale_peak(const Tangent& logs, const Tangent& redundancy) {
+  constexpr double kSame = 1e-9;
+  const double precision = 1.0 / (kScaleDeviation * kScaleDeviation);
+  if (logs.maxCoeff() - logs.minCoeff() < kSame) {
+    return -0.5 * precision * logs[0] * logs[0] +
+           std::log(scale_deviation(redundancy.sum()) / kScaleDeviation);
+  }
+  // (I + 11')^-1 = I - 11' / (1 + d)
+  const double with_own = 1.0 + static_cast<double>(logs.size());
+  const double squares = logs.squaredNorm() - logs.sum() * logs.sum() / with_own;
+  const Tangent curvature = 1.0 + 0.5 / precision * redundancy.array();
+  return -0.5 * (precision * squares + curvature.array().log().sum() + std::log(with_own) +
+                 std::log(1.0 - curvature.cwiseInverse().sum() / with_own));
 }
 
 }  // namespace isotherm::slam::detail

@@ -8,36 +8,31 @@ namespace isotherm::slam::detail {
 namespace {
 
 template <class Pose>
-PoseGraph<Pose> with_ratio(PoseGraph<Pose> graph, double ratio) {
-  const typename Pose::Tangent root =
-      PartScales<Pose>(ratio).by_coordinate().cwiseSqrt().cwiseInverse();
-  for (auto& constraint : graph.constraints) {
-    constraint.information = root.asDiagonal() * constraint.information * root.asDiagonal();
+void apply(const typename Pose::Tangent& shape, const std::vector<Index>& edges,
+           PoseGraph<Pose>& graph) {
+  const typename Pose::Tangent root = shape.cwiseSqrt().cwiseInverse();
+  for (const Index k : edges) {
+    auto& information = graph.constraints[k].information;
+    information = root.asDiagonal() * information * root.asDiagonal();
   }
+}
+
+template <class Pose>
+PoseGraph<Pose> with_shapes(PoseGraph<Pose> graph, const EdgeRoles& roles,
+                            const Shapes<Pose>& shapes) {
+  apply(shapes.odometry, roles.odometry, graph);
+  apply(shapes.loops, roles.candidates, graph);
   return graph;
 }
 
 }  // namespace
 
 template <class Pose>
-PartScales<Pose>::PartScales(double ratio) {
-  constexpr double kShare = static_cast<double>(Pose::kDim) / Pose::kDof;
-  rotation = std::pow(ratio, kShare);
-  translation = rotation / ratio;
-}
-
-template <class Pose>
-typename Pose::Tangent PartScales<Pose>::by_coordinate() const {
-  typename Pose::Tangent scales;
-  scales.template head<Pose::kDim>().setConstant(translation);
-  scales.template tail<Pose::kDof - Pose::kDim>().setConstant(rotation);
-  return scales;
-}
-
-template <class Pose>
-ScaledGraph<Pose> scaled_graph(const PoseGraph<Pose>& graph, const EdgeRoles& roles, double ratio) {
-  ScaledGraph<Pose> scaled{ratio == 1.0 ? reduce(graph, roles)
-                                        : reduce(with_ratio(graph, ratio), roles)};
+ScaledGraph<Pose> scaled_graph(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                               const Shapes<Pose>& shapes) {
+  ScaledGraph<Pose> scaled{shapes == Shapes<Pose>{}
+                               ? reduce(graph, roles)
+                               : reduce(with_shapes(graph, roles, shapes), roles)};
   Estimate<Pose> odometry(scaled.reduced);
   odometry.update(std::vector<bool>(scaled.reduced.loops.size(), false), {}, 0);
   scaled.log_determinant = odometry.log_determinant();
@@ -45,9 +40,18 @@ ScaledGraph<Pose> scaled_graph(const PoseGraph<Pose>& graph, const EdgeRoles& ro
   return scaled;
 }
 
-template struct PartScales<Pose2>;
-template struct PartScales<Pose3>;
-template ScaledGraph<Pose2> scaled_graph(const PoseGraph<Pose2>&, const EdgeRoles&, double);
-template ScaledGraph<Pose3> scaled_graph(const PoseGraph<Pose3>&, const EdgeRoles&, double);
+template <class Pose>
+double rotation_against_translation(const typename Pose::Tangent& shape) {
+  const typename Pose::Tangent logs = shape.array().log();
+  return std::exp(logs.template tail<Pose::kDof - Pose::kDim>().mean() -
+                  logs.template head<Pose::kDim>().mean());
+}
+
+template ScaledGraph<Pose2> scaled_graph(const PoseGraph<Pose2>&, const EdgeRoles&,
+                                         const Shapes<Pose2>&);
+template ScaledGraph<Pose3> scaled_graph(const PoseGraph<Pose3>&, const EdgeRoles&,
+                                         const Shapes<Pose3>&);
+template double rotation_against_translation<Pose2>(const Pose2::Tangent&);
+template double rotation_against_translation<Pose3>(const Pose3::Tangent&);
 
 }  // namespace isotherm::slam::detail

@@ -4,18 +4,20 @@
 
 namespace isotherm::slam::detail {
 
-/// Factors on the stated covariances of translation and of rotation that are `ratio` apart and
-/// leave determinants alone.
+/// Factors on the variances of each coordinate, of product 1: files give the accuracy of
+/// translation and of rotation in units that are easily mistaken, and robots drive straighter than
+/// they tell.
 template <class Pose>
-struct PartScales {
-  explicit PartScales(double ratio);
+struct Shapes {
+  typename Pose::Tangent odometry = Pose::Tangent::Ones();
+  typename Pose::Tangent loops = Pose::Tangent::Ones();
 
-  /// The same, one a coordinate.
-  typename Pose::Tangent by_coordinate() const;
-
-  double translation = 1.0;
-  double rotation = 1.0;
+  bool operator==(const Shapes&) const = default;
 };
+
+/// Of rotation's variances against translation's, by geometric means.
+template <class Pose>
+double rotation_against_translation(const typename Pose::Tangent& shape);
 
 /// A reduced graph with covariances other than stated, and what odometry alone adds to the
 /// evidence there.
@@ -26,12 +28,8 @@ struct ScaledGraph {
   Index variables = 0;           ///< poses that are free in it
 };
 
-/// `ratio` is the factor on the covariances of rotation against those of translation: files give
-/// the accuracy of both in units that are easily mistaken, for all edges alike.
 template <class Pose>
-ScaledGraph<Pose> scaled_graph(const PoseGraph<Pose>& graph, const EdgeRoles& roles, double ratio);
-
-extern template struct PartScales<Pose2>;
-extern template struct PartScales<Pose3>;
+ScaledGraph<Pose> scaled_graph(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                               const Shapes<Pose>& shapes);
 
 }  // namespace isotherm::slam::detail
