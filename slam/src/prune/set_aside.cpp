@@ -108,6 +108,7 @@ EdgeVerdict SetAside::verdict_of(const Row& row, const EdgeVerdict* original) {
   verdict.verdict = original->verdict;
   verdict.score = original->score;
   verdict.threshold = original->threshold;
+  verdict.probability = original->probability;
   return verdict;
 }
 
