@@ -139,7 +139,6 @@ void SetAside::return_to(PruneResult& result) const {
     for (Index& conflict : detail.conflicts) conflict = place[conflict];
   }
   spread(sources, result.consensus.details);
-  spread(sources, result.evidence.details);
 }
 
 template SetAside::SetAside(const PoseGraph<Pose2>&, EdgeRoles&);

@@ -173,7 +173,7 @@ TEST(PruneMethods, GraphsOfAnyDimensionWithTheirOwnRoles) {
 TEST(PruneMethods, SameVerdictsForAnyNumberOfThreads) {
   const auto city = simulate_city({.poses = 400, .measurements = {.loops = 150}, .seed = 5});
   const auto bad = corrupt(city.graph, city.truth, {.count = 150, .seed = 5});
-  for (const char* method : {"heat", "lap-line"}) {
+  for (const char* method : {"consensus", "heat", "lap-line"}) {
     const auto one = prune(bad.graph, prune_method(method), {.threads = 1});
     const auto three = prune(bad.graph, prune_method(method), {.threads = 3});
     for (std::size_t k = 0; k < one.verdicts.size(); ++k) {
