@@ -375,8 +375,8 @@ TEST(Consensus, FalseLoopsThatCrowdAroundTheGateDoNotPass) {
   EXPECT_GE(metrics.recall(), 0.995);
 }
 
-// Not met: a piece may lie anywhere, so that nothing says that a loop between neighbouring poses of
-// two is likelier true than another one. Of the true loops of such a map many are pruned.
+// Not met: a piece may lie anywhere on the map, and loops that skip a pose over the gaps all
+// measure about the same, which chance explains better. Many of them are pruned.
 //
 // Odometry in pieces of ten poses, with edges that skip a pose where a step is missing.
 TEST(Consensus, DISABLED_JoinsBrokenOdometryByShortLoops) {
