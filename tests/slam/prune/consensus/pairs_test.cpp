@@ -18,6 +18,8 @@ constexpr double kGate = 25.0;
 template <class Pose>
 class PairsOf : public testing::Test {
  protected:
+  using Matrix = typename Pose::Matrix;
+
   // Two passes of the same path, each loop joining corresponding poses; every
   // second one is stated backwards.
   static PoseGraph<Pose> two_passes(Random& random) {
@@ -45,7 +47,47 @@ class PairsOf : public testing::Test {
   static double chi2_of(const ReducedGraph<Pose>& graph, const std::pair<Index, Index>& pair) {
     const auto loops = forward_loops(graph, {});
     const auto [r, S] = pair_residual(graph, {}, loops[pair.first], loops[pair.second]);
-    return r.dot(Eigen::LLT<typename Pose::Matrix>(S).solve(r));
+    return r.dot(Eigen::LLT<Matrix>(S).solve(r));
+  }
+
+  // Odometry from one vertex to another, in either direction, step by step.
+  static std::vector<UncertainPose<Pose>> steps(const PoseGraph<Pose>& graph, Index from, Index to,
+                                                double scale) {
+    std::vector<UncertainPose<Pose>> all;
+    for (Index v = from; v != to; v += from < to ? 1 : -1) {
+      const auto& step = graph.constraints[from < to ? v : v - 1];  // stated either way
+      const Matrix covariance = scale * step.information.inverse();
+      const Matrix turn = step.T_from_to.adjoint();
+      if (step.from == v) {
+        all.push_back({step.T_from_to, covariance});
+      } else {
+        all.push_back({step.T_from_to.inverse(), turn * covariance * turn.transpose()});
+      }
+    }
+    return all;
+  }
+
+  // Of log(T^-1 product of the factors), each moved in turn.
+  static Matrix covariance_of(const std::vector<UncertainPose<Pose>>& factors, const Pose& T) {
+    constexpr double kStep = 1e-6;
+    Matrix covariance = Matrix::Zero();
+    for (std::size_t k = 0; k < factors.size(); ++k) {
+      const auto residual = [&](const typename Pose::Tangent& moved) {
+        Pose product;
+        for (std::size_t i = 0; i < factors.size(); ++i) {
+          product = product * factors[i].T;
+          if (i == k) product = product * Pose::exp(moved);
+        }
+        return (T.inverse() * product).log();
+      };
+      Matrix J;
+      for (int d = 0; d < Pose::kDof; ++d) {
+        const typename Pose::Tangent by = kStep * Pose::Tangent::Unit(d);
+        J.col(d) = (residual(by) - residual(-by)) / (2.0 * kStep);
+      }
+      covariance += J * factors[k].covariance * J.transpose();
+    }
+    return covariance;
   }
 };
 using Poses = testing::Types<Pose2, Pose3>;
@@ -71,46 +113,19 @@ TYPED_TEST(PairsOf, DistantLoopsAreNoPairs) {
 // By differences: how the residual moves with every step of odometry and with the known loop.
 TYPED_TEST(PairsOf, TheResidualHasTheCovarianceOfWhatPredictsIt) {
   using Pose = TypeParam;
-  using Matrix = typename Pose::Matrix;
-  constexpr double kStep = 1e-6;
   Random random(24);
   const auto graph = this->two_passes(random);
   const auto reduced = reduce(graph, edge_roles(graph));
   const CovarianceScale scale = {3.0, 0.5};
   const auto loops = forward_loops(reduced, scale);
   const auto &known = loops[1], &measured = loops[2];
-  std::vector<Pose> factors;  // their product is what is predicted
-  std::vector<Matrix> covariances;
-  const auto add_steps = [&](Index from, Index to) {
-    for (Index v = from; v != to; v += from < to ? 1 : -1) {
-      const auto& step = graph.constraints[from < to ? v : v - 1];  // stated either way
-      const Matrix covariance = scale.odometry * step.information.inverse();
-      const Matrix turn = step.T_from_to.adjoint();
-      const bool along = step.from == v;
-      factors.push_back(along ? step.T_from_to : step.T_from_to.inverse());
-      covariances.push_back(along ? covariance : Matrix(turn * covariance * turn.transpose()));
-    }
-  };
-  add_steps(measured.from, known.from);
-  factors.push_back(known.measured.T);
-  covariances.push_back(known.measured.covariance);
-  add_steps(known.to, measured.to);
-  Matrix expected = measured.measured.covariance;
-  for (std::size_t k = 0; k < factors.size(); ++k) {
-    const auto residual = [&](int coordinate, double by) {
-      Pose predicted;
-      for (std::size_t i = 0; i < factors.size(); ++i) {
-        predicted = predicted * factors[i];
-        if (i == k) predicted = predicted * Pose::exp(by * Pose::Tangent::Unit(coordinate));
-      }
-      return (measured.measured.T.inverse() * predicted).log();
-    };
-    Matrix J;
-    for (int d = 0; d < Pose::kDof; ++d) {
-      J.col(d) = (residual(d, kStep) - residual(d, -kStep)) / (2.0 * kStep);
-    }
-    expected += J * covariances[k] * J.transpose();
+  auto factors = this->steps(graph, measured.from, known.from, scale.odometry);
+  factors.push_back(known.measured);
+  for (const auto& step : this->steps(graph, known.to, measured.to, scale.odometry)) {
+    factors.push_back(step);
   }
+  const typename Pose::Matrix expected =
+      measured.measured.covariance + this->covariance_of(factors, measured.measured.T);
   const auto [r, S] = pair_residual(reduced, scale, known, measured);
   EXPECT_LT(r.norm(), 1e-9);
   EXPECT_LT((S - expected).norm(), 1e-6 * expected.norm());
