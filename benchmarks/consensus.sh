@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Forward consensus on clean, corrupted, real and drifting pose graphs.
+# Consensus on clean, corrupted, real and drifting pose graphs.
 # Writes docs/results/consensus.md. Every row is kept in build/consensus-rows, so
 # that an interrupted run goes on where it stopped; remove the folder to start anew.
 # usage: benchmarks/consensus.sh [--quick] [--rows-so-far] [data folder]
@@ -181,7 +181,7 @@ figures='| graph | precision | recall | true pruned | false not pruned | ambiguo
 
 {
   cat <<'HEAD'
-# Forward consensus: measured
+# Consensus: measured
 
 Made by `benchmarks/consensus.sh` at default options for every file. A positive is a
 pruned loop; false loops that are ambiguous count as not pruned. Injected loops are

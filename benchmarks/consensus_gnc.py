@@ -1,4 +1,4 @@
-"""CPU time of forward consensus beside GTSAM's GncOptimizer, in one run.
+"""CPU time of consensus beside GTSAM's GncOptimizer, in one run.
 
 Half of the loops of each graph are false (vertigo, random, seed 1). GNC starts at the
 poses of odometry with a truncated least-squares loss, odometry and the first pose being

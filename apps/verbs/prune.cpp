@@ -43,46 +43,30 @@ Json to_json(const ConsensusDetail& detail, std::size_t candidate,
   Json conflicts = Json::array();
   for (const Index other : detail.conflicts) conflicts.push_back(verdicts[other].edge);
   return {{"edge", verdicts[candidate].edge},
-          {"chi2", finite_or_null(detail.chi2)},
+          {"probability", finite_or_null(verdicts[candidate].probability)},
           {"evidence", finite_or_null(detail.evidence)},
-          {"round", detail.round},
+          {"chi2", finite_or_null(detail.chi2)},
+          {"connected", detail.connected},
           {"conflicts", std::move(conflicts)}};
 }
 
 Json to_json(const ConsensusResult& result, const spectral::EdgeVerdicts& verdicts) {
-  Json json = {{"inlier_fraction", result.inlier_fraction},
-               {"odometry_scale", result.odometry_scale},
-               {"loop_scale", result.loop_scale},
-               {"tail_factor", result.tail_factor},
-               {"settled", result.settled},
-               {"rounds", Json::array()},
-               {"loops", Json::array()}};
-  for (const auto& round : result.rounds) {
-    json["rounds"].push_back({{"rule", round.rule},
-                              {"accepted", round.accepted},
-                              {"dropped", round.dropped},
-                              {"in_force", round.in_force}});
-  }
-  for (std::size_t k = 0; k < result.details.size(); ++k) {
-    json["loops"].push_back(to_json(result.details[k], k, verdicts));
-  }
-  return json;
-}
-
-Json to_json(const EvidenceResult& result, const spectral::EdgeVerdicts& verdicts) {
   Json json = {{"log_evidence", finite_or_null(result.log_evidence)},
                {"odometry_scale", result.odometry_scale},
                {"loop_scale", result.loop_scale},
+               {"odometry_scales", result.odometry_scales},
+               {"loop_scales", result.loop_scales},
                {"rotation_scale", result.rotation_scale},
                {"share_as_stated", result.share_as_stated},
                {"settled", result.settled},
+               {"moves", Json::array()},
                {"loops", Json::array()}};
+  for (const auto& move : result.moves) {
+    json["moves"].push_back(
+        {{"accepted", move.accepted}, {"dropped", move.dropped}, {"in_force", move.in_force}});
+  }
   for (std::size_t k = 0; k < result.details.size(); ++k) {
-    const auto& detail = result.details[k];
-    json["loops"].push_back({{"edge", verdicts[k].edge},
-                             {"probability", finite_or_null(detail.probability)},
-                             {"evidence", finite_or_null(detail.log_ratio)},
-                             {"chi2", finite_or_null(detail.chi2)}});
+    json["loops"].push_back(to_json(result.details[k], k, verdicts));
   }
   return json;
 }
@@ -103,9 +87,6 @@ Json to_json(const PruneResult& result, const PruneOptions& options) {
   }
   if (result.method == ConsensusOptions::method()) {
     json["consensus"] = to_json(result.consensus, result.verdicts);
-  }
-  if (!result.evidence.details.empty()) {
-    json["evidence"] = to_json(result.evidence, result.verdicts);
   }
   return json;
 }
@@ -202,9 +183,9 @@ struct PruneVerb {
 
   void report(const PruneResult& result) const {
     for (const auto& warning : result.warnings) warn(flags, warning);
-    for (const auto& round : result.consensus.rounds) {
-      detail_line(flags, fmt::format("{:>9}: {} loops accepted, {} dropped, {} in force",
-                                     round.rule, round.accepted, round.dropped, round.in_force));
+    for (const auto& move : result.consensus.moves) {
+      detail_line(flags, fmt::format("{} loops accepted, {} dropped, {} in force", move.accepted,
+                                     move.dropped, move.in_force));
     }
     for (const auto& round : result.rounds) {
       detail_line(flags, fmt::format("scale {:>6}: {} of {} loops pruned, threshold {:.4g}",

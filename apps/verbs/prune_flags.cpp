@@ -36,11 +36,10 @@ const Preset& preset_of(const std::string& name) {
 }
 
 // What each method needs, when it is the one to take, and what it costs.
-constexpr std::array<HelpChoice, 11> kUses = {{
+constexpr std::array<HelpChoice, 10> kUses = {{
     {"consensus",
-     "the default: accepts loops that odometry and each other prove. Needs information "
-     "that can be used; some factorisations a round"},
-    {"evidence", "a probability for every loop. Needs the same, takes a few times as long"},
+     "the default: the loops that explain all measurements best, and a probability for "
+     "each. Needs information that can be used; some factorisations a move"},
     {"heat",
      "the shape of the graph decides, also where information is missing or wrong. Needs "
      "many loops; a sparse factorisation a scale"},

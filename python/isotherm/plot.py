@@ -88,12 +88,18 @@ def before_and_after(result: PruneResult, solved: OptimizeResult) -> Any:
 
 
 def scores(verdicts: Verdicts, *, ax: Any = None) -> Any:
-    """How far each score is from its threshold, in decades, by verdict."""
+    """How far each score is from its threshold, in decades, by verdict.
+
+    Where verdicts are probabilities, decades of the odds that an edge is false, 20 at most.
+    """
     ax = _axes(ax)
-    usable = (verdicts.score > 0) & (verdicts.threshold > 0) & np.isfinite(verdicts.score)
-    usable &= np.isfinite(verdicts.threshold)
-    decades = np.zeros(len(verdicts))
-    decades[usable] = np.log10(verdicts.score[usable] / verdicts.threshold[usable])
+    usable = np.isfinite(verdicts.score) & np.isfinite(verdicts.threshold)
+    if np.isfinite(verdicts.probability).any():
+        decades = np.clip((verdicts.score - verdicts.threshold) / np.log(10.0), -20.0, 20.0)
+    else:
+        usable &= (verdicts.score > 0) & (verdicts.threshold > 0)
+        decades = np.zeros(len(verdicts))
+        decades[usable] = np.log10(verdicts.score[usable] / verdicts.threshold[usable])
     masks = {"keep": verdicts.kept, "prune": verdicts.pruned, "ambiguous": verdicts.ambiguous}
     data = [decades[usable & masks[name]] for name in _VERDICTS]
     labels = [f"{name} ({len(part)})" for name, part in zip(_VERDICTS, data, strict=True)]

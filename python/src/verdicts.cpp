@@ -90,6 +90,12 @@ void bind_reasons(nb::class_<Verdicts>& bound) {
           },
           "What the score was compared with.")
       .def_prop_ro("stage", stages, "The scale, round or test that decided.")
+      .def_prop_ro(
+          "probability",
+          [](const Verdicts& self) {
+            return member_view(self.rows, &EdgeVerdict::probability, nb::find(self));
+          },
+          "Of the edge being true, as method consensus states it; nan for others.")
       .def_prop_ro("counts", counts, nb::sig("def counts(self) -> dict[str, int]"),
                    "How many there are of each verdict.")
       .def(
@@ -127,6 +133,9 @@ nb::dict columns(const Verdicts& verdicts, nb::handle owner) {
   all["score"] = member_view(verdicts.rows, &EdgeVerdict::score, owner);
   all["threshold"] = member_view(verdicts.rows, &EdgeVerdict::threshold, owner);
   all["stage"] = stages(verdicts);
+  if (state_probabilities(verdicts.rows)) {
+    all["probability"] = member_view(verdicts.rows, &EdgeVerdict::probability, owner);
+  }
   return all;
 }
 

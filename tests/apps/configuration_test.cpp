@@ -26,7 +26,7 @@ TEST_F(Configuration, TakesNumbersAsTheyStand) {
   // What another method has may be out of range for a third.
   EXPECT_EQ(with_config(R"({"method": "heat", "significance": 0.7})").code, 0);
   EXPECT_THAT(run("prune x --method heat --significance 0.7").err,
-              HasSubstr("is an option of consensus, evidence, chi2, not of method heat"));
+              HasSubstr("is an option of consensus, chi2, not of method heat"));
   const struct {
     const char* text;
     const char* problem;
@@ -91,7 +91,6 @@ TEST_F(Configuration, EveryNumberHasARangeThatHelpStates) {
                                 "prune --method rrr",
                                 "prune --method pcm",
                                 "prune --method gnc",
-                                "prune --method evidence",
                                 "prune --method chi2",
                                 "prune",
                                 "optimize",

@@ -133,7 +133,8 @@ TEST_F(Messages, VerdictsKeepNames) {
   graph += "EDGE_SE2 " + key(3) + " " + key(17) + " 14" + tail;
   write_text(folder / "keys.g2o", graph);
   run_ok("prune keys.g2o -q --verdicts verdicts.csv --report report.json");
-  EXPECT_THAT(read_text(folder / "verdicts.csv"), HasSubstr(",stage,from_name,to_name\n"));
+  EXPECT_THAT(read_text(folder / "verdicts.csv"),
+              HasSubstr(",stage,probability,from_name,to_name\n"));
   EXPECT_THAT(read_text(folder / "verdicts.csv"), HasSubstr(",a3,a17\n"));
   EXPECT_THAT(read_text(folder / "report.json"), HasSubstr("\"a17\""));
 

@@ -3,9 +3,11 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "run_command.hpp"
 
@@ -45,10 +47,37 @@ TEST_F(PruneCommand, FindsFalseLoopsOfASimulatedCity) {
 
 TEST_F(PruneCommand, VerdictsHaveOneRowACandidateInFileOrder) {
   make_corrupted();
-  run_ok("prune bad.g2o --verdicts verdicts.csv");
-  const auto text = read_text(folder / "verdicts.csv");
-  EXPECT_THAT(text, testing::StartsWith("edge,from,to,verdict,score,threshold,stage\n599,"));
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 371);
+  const std::string columns = "edge,from,to,verdict,score,threshold,stage";
+  for (const auto& [method, added] : {std::pair("consensus", ",probability"), {"chi2", ""}}) {
+    run_ok(std::string("prune bad.g2o --verdicts verdicts.csv --method ") + method);
+    const auto text = read_text(folder / "verdicts.csv");
+    EXPECT_THAT(text, testing::StartsWith(columns + added + "\n599,"));
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 371);
+  }
+}
+
+TEST_F(PruneCommand, VerdictsOfConsensusAreProbabilitiesInEveryDocument) {
+  make_corrupted();
+  run_ok("prune bad.g2o --verdicts verdicts.csv --json result.json");
+  const auto result = nlohmann::json::parse(read_text(folder / "result.json"))["consensus"];
+  EXPECT_EQ(result["settled"], true);
+  EXPECT_FALSE(result["moves"].empty());
+  for (const char* scale : {"odometry_scale", "loop_scale", "rotation_scale"}) {
+    EXPECT_NEAR(result[scale].get<double>(), 1.0, 0.3) << scale;
+  }
+  std::istringstream rows(read_text(folder / "verdicts.csv"));
+  std::string row;
+  std::getline(rows, row);
+  for (const auto& loop : result["loops"]) {
+    ASSERT_TRUE(std::getline(rows, row));
+    const double probability = loop["probability"];
+    EXPECT_EQ(std::stod(row.substr(row.rfind(',') + 1)), probability);
+    EXPECT_EQ(loop["edge"], std::stoi(row));
+    EXPECT_TRUE(loop["connected"]);
+    const bool pruned = row.find(",prune,") != std::string::npos;
+    EXPECT_EQ(pruned, probability < 0.01);
+    EXPECT_EQ(pruned, !loop["conflicts"].empty());
+  }
 }
 
 TEST_F(PruneCommand, LabelAgreesWithTheLabelsOfCorrupt) {
@@ -143,10 +172,13 @@ TEST_F(PruneCommand, TheOrderOfTheFilePlaysNoPartForPcm) {
 
 TEST_F(PruneCommand, SameBytesForAnyNumberOfThreads) {
   make_corrupted();
-  run_ok("prune bad.g2o --method heat --threads 1 -o one.g2o --verdicts one.csv");
-  run_ok("prune bad.g2o --method heat --threads 2 -o two.g2o --verdicts two.csv");
-  EXPECT_EQ(read_text(folder / "one.g2o"), read_text(folder / "two.g2o"));
-  EXPECT_EQ(read_text(folder / "one.csv"), read_text(folder / "two.csv"));
+  for (const std::string method : {"consensus", "heat"}) {
+    const auto prune = "prune bad.g2o --method " + method;
+    run_ok(prune + " --threads 1 -o one.g2o --verdicts one.csv");
+    run_ok(prune + " --threads 2 -o two.g2o --verdicts two.csv");
+    EXPECT_EQ(read_text(folder / "one.g2o"), read_text(folder / "two.g2o"));
+    EXPECT_EQ(read_text(folder / "one.csv"), read_text(folder / "two.csv"));
+  }
 }
 
 TEST_F(PruneCommand, GraphsWithoutLoops) {

@@ -301,12 +301,46 @@ TEST_F(Report, HeatIsThereWhereItDecided) {
     EXPECT_EQ(json["spectrum"]["values"].empty(), !there) << arguments;
   };
   expect_heat("prune city.g2o", false);
-  expect_heat("prune city.g2o --method evidence", false);
   expect_heat("prune city.g2o --method heat", true);
   write_text(folder / "graph.csv", "0,1\n1,2\n2,3\n3,0\n0,2\n1,3\n");
   expect_heat("edges graph.csv --method heat", true);
   expect_heat("edges graph.csv --method affinity", true);
   expect_heat("edges graph.csv --method jaccard", false);
+}
+
+// The file of a city whose odometry is far more accurate than its information says.
+TEST_F(Report, SaysHowSureVerdictsAreAndWhatTheFileIsWorth) {
+  run_ok("simulate city --poses 200 --loops 80 --seed 4 -o city.g2o");
+  const auto how_sure = [this](const std::string& arguments) {
+    const auto json = document(arguments);
+    for (const auto& paragraph : json["summary"]) {
+      if (paragraph["heading"] == "How sure") return paragraph["text"].get<std::string>();
+    }
+    return std::string();
+  };
+  const auto plain = how_sure("prune city.g2o");
+  EXPECT_THAT(plain, testing::StartsWith("Verdicts are probabilities of being true"));
+  EXPECT_THAT(plain, HasSubstr("among the 80 loops that are kept fewer than"));
+  EXPECT_THAT(plain, HasSubstr("None is undecided."));
+  EXPECT_THAT(plain, Not(HasSubstr("factor of")));
+  EXPECT_THAT(how_sure("prune city.g2o --no-calibrate"), HasSubstr("taken at its word"));
+  EXPECT_THAT(how_sure("prune city.g2o --method chi2"), HasSubstr("within a factor of two"));
+
+  const auto city = read_text(folder / "city.g2o");
+  const auto stating = [&](const std::string& information) {
+    auto changed = city;
+    const std::string stated = " 2500 0 0 2500 0 250000\n";  // of odometry
+    for (auto at = changed.find(stated); at != std::string::npos; at = changed.find(stated, at)) {
+      changed.replace(at, stated.size(), information);
+    }
+    write_text(folder / "off.g2o", changed);
+    return how_sure("prune off.g2o");
+  };
+  EXPECT_THAT(
+      stating(" 2.5 0 0 2.5 0 250\n"),
+      HasSubstr("Of the accuracy of odometry the file is off by more than a factor of ten"));
+  EXPECT_THAT(stating(" 0.0025 0 0 0.0025 0 0.25\n"),
+              HasSubstr("What the file states of the accuracy of odometry is meaningless"));
 }
 
 TEST_F(Report, LoopsThatNoOdometryReachesHaveNoChiSquaredAgainstIt) {

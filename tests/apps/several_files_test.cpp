@@ -74,7 +74,7 @@ TEST_F(SeveralInputs, RepeatsInOneFileHaveRowsButNoWeight) {
   EXPECT_THAT(twice.err, HasSubstr("3 edges repeat another one to the last digit; counted once"));
   const auto rows = read_text(folder / "twice.csv");
   EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1 + 6);
-  EXPECT_THAT(rows, HasSubstr(",repeat,a1,b1\n"));
+  EXPECT_THAT(rows, testing::ContainsRegex(",repeat,[0-9.e-]+,a1,b1\n"));
   EXPECT_THAT(run("optimize both.g2o -o poses.g2o").err, HasSubstr("3 edges repeat another"));
   const auto info = run_ok("info both.g2o");
   EXPECT_THAT(info, HasSubstr("edge a1 -> b1 says again what line 18 says"));
@@ -128,7 +128,8 @@ TEST_F(SwitchableInput, HasLoopsAndASayingAboutWhatIsNotUsed) {
   write_text(folder / "robust.g2o", text);
   const auto result = run("prune robust.g2o -o out.g2o");
   EXPECT_EQ(result.code, 0) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("3 loops, 3 kept"));
+  EXPECT_THAT(result.err, HasSubstr("3 loops, "));
+  EXPECT_THAT(result.err, HasSubstr(" 0 pruned")) << "of so few";
   EXPECT_THAT(result.err, HasSubstr("switchable edge; read as a loop without its switch, and 2 "
                                     "more like it"));
   EXPECT_THAT(result.err, HasSubstr("a landmark; kept as it stands but not used"));

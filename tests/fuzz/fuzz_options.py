@@ -24,7 +24,7 @@ OK, FAILURE, USAGE, BAD_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 1, 2, 3, 4, 130
 LONGEST_RUN = 5.0  # seconds until Ctrl-C
 LONGEST_STOP = 3.0  # seconds it may take then; the promise is 2
 
-METHODS = "consensus evidence heat chi2 lap-line rrr pcm sc dcs cauchy gnc".split()
+METHODS = "consensus heat chi2 lap-line rrr pcm sc dcs cauchy gnc".split()
 VERBS = {  # the verb and its positional arguments, and what it may write
     **{f"prune --method {m}": ["GRAPH"] for m in METHODS},
     "optimize": ["GRAPH"],

@@ -273,8 +273,10 @@ class TestPandas:
             assert isinstance(table, self.pandas.DataFrame), name
             assert len(table) == rows, name
 
-    def test_a_table_says_what_the_file_says(self, tmp_path, city):
-        verdicts = slam.prune(city[0], "chi2").verdicts
+    @pytest.mark.parametrize("method", ["chi2", "consensus"])
+    def test_a_table_says_what_the_file_says(self, tmp_path, city, method):
+        verdicts = slam.prune(city[0], method).verdicts
+        assert np.isfinite(verdicts.probability).all() == (method == "consensus")
         verdicts.write(tmp_path / "verdicts.csv")
         written = self.pandas.read_csv(tmp_path / "verdicts.csv")
         self.pandas.testing.assert_frame_equal(

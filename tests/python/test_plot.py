@@ -53,11 +53,13 @@ def test_lines_join_the_ends_of_edges(city):
 
 
 def test_scores_are_split_at_the_threshold(city):
-    verdicts = slam.prune(city[0], "chi2").verdicts
-    axes = plot.scores(verdicts)
-    heights = sum(patch.get_height() for patch in axes.containers[0].patches)
-    assert heights == verdicts.kept.sum()
-    assert drawn(axes)
+    for method in ("chi2", "consensus"):
+        verdicts = slam.prune(city[0], method).verdicts
+        axes = plot.scores(verdicts)
+        for container, shown in ((0, verdicts.kept), (2, verdicts.pruned)):
+            heights = sum(patch.get_height() for patch in axes.containers[container].patches)
+            assert heights == shown.sum(), method
+        assert drawn(axes)
 
 
 def test_reasons_count_every_edge(city):

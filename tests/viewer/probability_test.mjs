@@ -4,7 +4,7 @@ import { test } from 'node:test';
 import { cityReport, scratchFolder } from './reports.mjs';
 import { reportSuite } from './suite.mjs';
 
-const suite = reportSuite(cityReport(scratchFolder(), '--method', 'evidence'));
+const suite = reportSuite(cityReport(scratchFolder()));
 
 test('the table sorts by probability', async () => {
   const { page } = suite;

@@ -17,14 +17,20 @@ function isDrawable(value: number): boolean {
 /**
  * Sorts values into bins, a row of counts for each group. Where the values span several
  * orders of magnitude the bins are even in the logarithm; what is not positive then goes to
- * the first bin, and what is infinite to the last.
+ * the first bin, and what is infinite to the last. What is farther than `most` from zero goes to
+ * the outer bins, too.
  */
-export function histogram(values: ArrayLike<number>, group: ArrayLike<number>, groups: number): Histogram {
+export function histogram(
+  values: ArrayLike<number>,
+  group: ArrayLike<number>,
+  groups: number,
+  most = Infinity,
+): Histogram {
   const finite = Array.from(values).filter(isDrawable);
   const positive = finite.filter((value) => value > 0);
   const extent = (all: number[]) =>
     all.reduce(([low, high], v) => [Math.min(low, v), Math.max(high, v)], [Infinity, -Infinity]);
-  let [low, high] = extent(finite);
+  let [low, high] = extent(finite).map((end) => Math.max(-most, Math.min(most, end)));
   const [smallest, largest] = extent(positive);
   const log = positive.length > 1 && largest > WIDE * smallest && low >= 0;
   if (log) {

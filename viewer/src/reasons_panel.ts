@@ -8,12 +8,10 @@ const SHOWN_CONFLICTS = 40;
 
 /** What a stage means, where its name does not say it. */
 export function stageInWords(stage: string): string {
-  const round = /^round (\d+)$/.exec(stage);
-  if (round) return `accepted in round ${round[1]}`;
   if (/^t=/.test(stage)) return `at diffusion time ${stage.replace('=', ' = ')}`;
   const words: Record<string, string> = {
-    refuted: 'refuted: the accepted ones predict something else',
-    unproven: 'unproven: neither confirmed nor refuted by the others',
+    accepted: 'accepted: part of the best explanation of all measurements',
+    rejected: 'rejected: all measurements are explained better without it',
     unconnected: 'unconnected: nothing accepted joins its ends',
     induction: 'at induction: its weight vanished',
     'leave-one-out': 'by the other ranges, without this one',
@@ -29,8 +27,8 @@ function comparison(score: number, threshold: number): string {
   if (!(threshold > 0) || !Number.isFinite(threshold)) {
     return `${number(score)} (no threshold applied)`;
   }
-  const ratio = number(score / threshold);
-  return `${number(score)} against a threshold of ${number(threshold)} (${ratio} times)`;
+  const ratio = score >= 0 ? ` (${number(score / threshold)} times)` : '';
+  return `${number(score)} against a threshold of ${number(threshold)}${ratio}`;
 }
 
 // Links from loop to loop.

@@ -7,6 +7,9 @@ import type { Model } from './model';
 import { VERDICTS } from './model';
 import type { Store } from './store';
 
+/** Log odds beyond which certain is certain: drawn in full they would push all others together. */
+const CERTAIN = 50;
+
 /** The one threshold of all candidates, or null if they differ. */
 function commonThreshold(model: Model): number | null {
   const { threshold } = model.candidates;
@@ -16,6 +19,18 @@ function commonThreshold(model: Model): number | null {
 function tell(model: Model, { edges, counts }: Histogram, bin: number): string {
   const heights = VERDICTS.map((name, verdict) => `${name}: ${count(counts[verdict][bin])}`);
   return [`${number(edges[bin])} to ${number(edges[bin + 1])}, ${model.nouns.edges}`, ...heights].join('\n');
+}
+
+/** What the outer bars hold besides, in words. */
+function wordsOfOuterBars(scores: Float32Array, most: number): string {
+  const beyond = (far: (score: number) => boolean) =>
+    scores.reduce((sum, score) => sum + Number(far(score)), 0);
+  if (Number.isFinite(most)) {
+    const far = beyond((score) => Math.abs(score) > most);
+    return far > 0 ? `${count(far)} scores beyond ±${most} are counted in the outer bars.` : '';
+  }
+  const infinite = beyond((score) => score === Infinity);
+  return infinite > 0 ? `${count(infinite)} infinite scores are counted in the last bar.` : '';
 }
 
 /** How the scores lie around the threshold. */
@@ -28,7 +43,8 @@ export function scorePanel(model: Model, store: Store): HTMLElement {
   const values =
     common === null ? candidates.score.map((s, k) => s / candidates.threshold[k]) : candidates.score;
   const threshold = common ?? 1;
-  const bins = histogram(values, candidates.verdict, VERDICTS.length);
+  const most = candidates.columns.some(({ key }) => key === 'probability') ? CERTAIN : Infinity;
+  const bins = histogram(values, candidates.verdict, VERDICTS.length, most);
   // The tallest stack is drawn first, the others over it.
   const stacks = stacked(bins.counts);
   const series = VERDICTS.map((name, verdict) => ({
@@ -40,9 +56,6 @@ export function scorePanel(model: Model, store: Store): HTMLElement {
   }))
     .filter((_, verdict) => candidates.verdict.includes(verdict))
     .reverse();
-  const infinite = candidates.score.reduce((sum, s) => sum + Number(s === Infinity), 0);
-  const note =
-    infinite > 0 ? `${count(infinite)} infinite scores are counted in the last bar.` : '';
   return panel(
     'scores',
     title,
@@ -62,6 +75,6 @@ export function scorePanel(model: Model, store: Store): HTMLElement {
       },
       store,
     ),
-    html('p', { class: 'note' }, note),
+    html('p', { class: 'note' }, wordsOfOuterBars(candidates.score, most)),
   );
 }

@@ -17,6 +17,13 @@ test('values that lie close together, or are negative, get even bins', () => {
   assert.ok(!histogram([-1, 200, 3], [0, 0, 0], 1).log);
 });
 
+test('what is far from zero is counted in the outer bins', () => {
+  const bins = histogram([-1000, -60, -2, 3, 70, 5000], [0, 0, 0, 0, 0, 0], 1, 50);
+  assert.equal(total(bins.counts), 6);
+  assert.deepEqual([bins.edges[0], bins.edges.at(-1)], [-50, 50]);
+  assert.deepEqual([bins.counts[0][0], bins.counts[0].at(-1)], [2, 2]);
+});
+
 test('no values, or all alike, have bins', () => {
   for (const values of [[], [5, 5], [Infinity], [0, 0]]) {
     const bins = histogram(values, values.map(() => 0), 1);

@@ -93,16 +93,6 @@ class Explainer {
     });
     add_chi2();
     if (!decisions_.consensus.details.empty()) add_consensus();
-    if (!decisions_.evidence.details.empty()) add_probability();
-  }
-
-  void add_probability() {
-    ReportColumn probability{"probability", "probability", "", "Of the loop being true.", {},
-                             false};
-    for (const auto& detail : decisions_.evidence.details) {
-      probability.values.push_back(static_cast<float>(detail.probability));
-    }
-    report_.candidates.columns.push_back(std::move(probability));
   }
 
   void add_chi2() {
@@ -135,9 +125,18 @@ class Explainer {
 
   void add_consensus() {
     auto& all = report_.candidates;
-    ReportColumn evidence{"evidence", "evidence",
-                          "",         "Log odds of a correct loop against a loop to anywhere.",
-                          {},         false};
+    ReportColumn probability{"probability", "probability", "", "Of the loop being true.", {},
+                             false};
+    for (const auto& verdict : decisions_.verdicts) {
+      probability.values.push_back(static_cast<float>(verdict.probability));
+    }
+    ReportColumn evidence{"evidence",
+                          "evidence",
+                          "",
+                          "Log of how much likelier the measurements make a true loop than a "
+                          "false one.",
+                          {},
+                          false};
     all.conflict_offsets.push_back(0);
     for (const auto& detail : decisions_.consensus.details) {
       evidence.values.push_back(static_cast<float>(detail.evidence));
@@ -146,6 +145,7 @@ class Explainer {
       }
       all.conflict_offsets.push_back(static_cast<std::uint32_t>(all.conflicts.size()));
     }
+    all.columns.push_back(std::move(probability));
     all.columns.push_back(std::move(evidence));
   }
 
@@ -211,7 +211,7 @@ class Explainer {
         {"What was decided",
          words_of_decisions(decisions_, report_.nouns, run_.options.keep_ambiguous)},
         {"The result", words_of_map()},
-        {"How sure", words_of_certainty(decisions_, asked)},
+        {"How sure", words_of_certainty(decisions_, asked, report_.nouns)},
         {"Options",
          options_in_words(report_.options, options_to_json(prune_method(method_name(asked))))}};
     report_.truth_note = words_of_truth();

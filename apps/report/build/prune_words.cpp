@@ -1,9 +1,13 @@
 #include "report/build/prune_words.hpp"
 
+#include <cmath>
+#include <cstdint>
+#include <string_view>
 #include <variant>
 
 #include <fmt/format.h>
 
+#include "isotherm/base/words.hpp"
 #include "report/build/candidate_columns.hpp"
 
 namespace isotherm::apps {
@@ -12,25 +16,79 @@ namespace {
 using namespace slam;
 using spectral::Verdict;
 
-std::string words_of_consensus(const ConsensusResult& result, const ConsensusOptions& options) {
+// A number of loops that need not be a whole one.
+std::string expected_number(double number) {
+  constexpr double kNegligible = 1e-3;
+  return number < kNegligible ? fmt::format("fewer than {}", kNegligible)
+                              : fmt::format("{:.2g}", number);
+}
+
+std::string words_of_probabilities(const spectral::EdgeVerdicts& verdicts,
+                                   const ReportNouns& nouns) {
+  double false_kept = 0.0;
+  double true_pruned = 0.0;
+  for (const auto& verdict : verdicts) {
+    if (std::isnan(verdict.probability)) continue;
+    if (verdict.verdict == Verdict::keep) false_kept += 1.0 - verdict.probability;
+    if (verdict.verdict == Verdict::prune) true_pruned += verdict.probability;
+  }
+  const auto counted_as = [&](Verdict wanted) {
+    return counted(static_cast<std::uint64_t>(count(verdicts, wanted)), nouns.edge, nouns.edges);
+  };
   return fmt::format(
-      "Where errors are as the information matrices say, a correct loop is pruned with "
-      "probability {}. About {:.0f} % of the loops that were decided are taken as correct. "
-      "Covariances were scaled by {:.3g} for odometry and {:.3g} for loops to fit the data.",
-      options.significance, 100.0 * result.inlier_fraction, result.odometry_scale,
-      result.loop_scale);
+      "Verdicts are probabilities of being true, by all measurements together: among the {} that "
+      "are kept {} are expected to be false, among the {} that are pruned {} to be true. {}.",
+      counted_as(Verdict::keep), expected_number(false_kept), counted_as(Verdict::prune),
+      expected_number(true_pruned),
+      count(verdicts, Verdict::ambiguous) == 0
+          ? "None is undecided"
+          : fmt::format("Undecided: {}", counted_as(Verdict::ambiguous)));
+}
+
+// An ordinary finding up to one deviation of what is believed of files before, a factor of ten in
+// the errors; beyond two the file says nothing.
+std::string words_of_scale(std::string_view what, double scale) {
+  const double deviations = prior_deviations(scale);
+  if (deviations <= 1.0) return "";
+  return deviations <= 2.0
+             ? fmt::format(" Of {} the file is off by more than a factor of ten.", what)
+             : fmt::format(
+                   " What the file states of {} is meaningless, off by more than a factor "
+                   "of a hundred: verdicts rest on what the data say of it.",
+                   what);
+}
+
+std::string words_of_scales(const ConsensusResult& result) {
+  std::string text = fmt::format(
+      " Errors turn out to be {:.3g} times (odometry) and {:.3g} times (most loops) as large as "
+      "the file states, those of rotation against translation {:.3g} times.",
+      std::sqrt(result.odometry_scale), std::sqrt(result.loop_scale),
+      std::sqrt(result.rotation_scale));
+  if (result.loop_scale < 1.0 && result.share_as_stated > 0.0) {
+    text += fmt::format(" About {:.0f} % of the loops are only as accurate as stated.",
+                        100.0 * result.share_as_stated);
+  }
+  return text + words_of_scale("the accuracy of odometry", result.odometry_scale) +
+         words_of_scale("the accuracy of loops", result.loop_scale) +
+         words_of_scale("the accuracy of rotation against translation", result.rotation_scale);
+}
+
+std::string words_of_consensus(const PruneResult& decisions, const ConsensusOptions& options,
+                               const ReportNouns& nouns) {
+  return words_of_probabilities(decisions.verdicts, nouns) +
+         (options.calibrate ? words_of_scales(decisions.consensus)
+                            : " The information of the file was taken at its word.");
 }
 
 }  // namespace
 
 ReportRounds report_rounds(const PruneResult& decisions) {
   ReportRounds table;
-  if (!decisions.consensus.rounds.empty()) {
-    table.columns = {"round", "rule", "accepted", "dropped", "in force"};
-    for (const auto& round : decisions.consensus.rounds) {
-      table.rows.push_back({std::to_string(table.rows.size() + 1), round.rule,
-                            std::to_string(round.accepted), std::to_string(round.dropped),
-                            std::to_string(round.in_force)});
+  if (!decisions.consensus.moves.empty()) {
+    table.columns = {"move", "accepted", "dropped", "in force"};
+    for (const auto& move : decisions.consensus.moves) {
+      table.rows.push_back({std::to_string(table.rows.size() + 1), std::to_string(move.accepted),
+                            std::to_string(move.dropped), std::to_string(move.in_force)});
     }
   } else if (!decisions.rounds.empty()) {
     table.columns = {"scale t", "loops", "pruned", "threshold", "separation"};
@@ -55,15 +113,15 @@ std::string words_of_decisions(const PruneResult& decisions, const ReportNouns& 
   return text;
 }
 
-std::string words_of_certainty(const PruneResult& decisions, const PruneOptions& options) {
+std::string words_of_certainty(const PruneResult& decisions, const PruneOptions& options,
+                               const ReportNouns& nouns) {
   if (decisions.verdicts.empty()) return "There was nothing to decide.";
-  std::string text = fmt::format("{} of {} scores are within a factor of two of their threshold.",
-                                 close_calls(decisions.verdicts), decisions.verdicts.size());
   const auto* consensus = std::get_if<ConsensusOptions>(&options);
   if (consensus != nullptr && decisions.method == ConsensusOptions::method()) {
-    text += " " + words_of_consensus(decisions.consensus, *consensus);
+    return words_of_consensus(decisions, *consensus, nouns);
   }
-  return text;
+  return fmt::format("{} of {} scores are within a factor of two of their threshold.",
+                     close_calls(decisions.verdicts), decisions.verdicts.size());
 }
 
 }  // namespace isotherm::apps

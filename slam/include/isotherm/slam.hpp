@@ -39,7 +39,6 @@
 #include "isotherm/slam/prune/consensus.hpp"
 #include "isotherm/slam/prune/curve_evidence.hpp"
 #include "isotherm/slam/prune/curve_prune.hpp"
-#include "isotherm/slam/prune/evidence.hpp"
 #include "isotherm/slam/prune/heat_prune.hpp"
 #include "isotherm/slam/prune/induce.hpp"
 #include "isotherm/slam/prune/kernel_prune.hpp"

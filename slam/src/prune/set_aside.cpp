@@ -108,6 +108,7 @@ EdgeVerdict SetAside::verdict_of(const Row& row, const EdgeVerdict* original) {
   verdict.verdict = original->verdict;
   verdict.score = original->score;
   verdict.threshold = original->threshold;
+  verdict.probability = original->probability;
   return verdict;
 }
 
@@ -138,7 +139,6 @@ void SetAside::return_to(PruneResult& result) const {
     for (Index& conflict : detail.conflicts) conflict = place[conflict];
   }
   spread(sources, result.consensus.details);
-  spread(sources, result.evidence.details);
 }
 
 template SetAside::SetAside(const PoseGraph<Pose2>&, EdgeRoles&);

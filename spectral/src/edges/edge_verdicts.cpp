@@ -1,8 +1,14 @@
 #include "isotherm/spectral/edges/edge_verdicts.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace isotherm::spectral {
+
+bool state_probabilities(const EdgeVerdicts& verdicts) {
+  return std::any_of(verdicts.begin(), verdicts.end(),
+                     [](const EdgeVerdict& v) { return !std::isnan(v.probability); });
+}
 
 bool stays(const EdgeVerdict& verdict, bool keep_ambiguous) {
   return verdict.verdict == Verdict::keep ||

@@ -1,7 +1,9 @@
 #include "isotherm/spectral/edges/verdict_file.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <unordered_set>
 
@@ -23,29 +25,46 @@ double score_field(const CsvReader& csv, std::size_t column, std::string_view wh
   return csv.number(column, what);
 }
 
+// Empty where none is stated, as is all of a file without the column.
+double probability_field(const CsvReader& csv, std::optional<std::size_t> column) {
+  constexpr std::string_view kWhat = "probability";
+  if (!column || csv.text(*column, kWhat).empty()) return std::numeric_limits<double>::quiet_NaN();
+  const double value = csv.number(*column, kWhat);
+  if (value < 0.0 || value > 1.0) csv.fail(*column, "expected a probability, from 0 to 1");
+  return value;
+}
+
+void append_fields(std::string& row, const EdgeVerdict& verdict) {
+  append_number(row, verdict.edge);
+  row += ',';
+  append_number(row, verdict.from);
+  row += ',';
+  append_number(row, verdict.to);
+  row += ',';
+  row += enum_name(verdict.verdict);
+  row += ',';
+  append_number(row, verdict.score);
+  row += ',';
+  append_number(row, verdict.threshold);
+  row += ',';
+  row += verdict.stage;
+}
+
 }  // namespace
 
 void write_verdicts(const std::string& path, const EdgeVerdicts& verdicts,
                     const VertexNames& names) {
   OutputFile file(path);
+  const bool probable = state_probabilities(verdicts);
   std::string row;
   file.write(kHeader);
+  if (probable) file.write(",probability");
   file.write(names ? ",from_name,to_name\n" : "\n");
   for (const auto& verdict : verdicts) {
     row.clear();
-    append_number(row, verdict.edge);
-    row += ',';
-    append_number(row, verdict.from);
-    row += ',';
-    append_number(row, verdict.to);
-    row += ',';
-    row += enum_name(verdict.verdict);
-    row += ',';
-    append_number(row, verdict.score);
-    row += ',';
-    append_number(row, verdict.threshold);
-    row += ',';
-    row += verdict.stage;
+    append_fields(row, verdict);
+    if (probable) row += ',';
+    if (!std::isnan(verdict.probability)) append_number(row, verdict.probability);
     if (names) row += ',' + names(verdict.from) + ',' + names(verdict.to);
     row += '\n';
     file.write(row);
@@ -65,6 +84,7 @@ EdgeVerdicts read_verdicts(const std::string& path) {
   const auto score = csv.column("score", 4);
   const auto threshold = csv.column("threshold", 5);
   const auto stage = csv.column("stage", 6);
+  const auto probability = csv.find_column("probability");
   do {
     EdgeVerdict row;
     row.edge = static_cast<std::int64_t>(csv.unsigned_integer(edge, "edge"));
@@ -75,6 +95,7 @@ EdgeVerdicts read_verdicts(const std::string& path) {
     row.score = score_field(csv, score, "score");
     row.threshold = score_field(csv, threshold, "threshold");
     row.stage = csv.text(stage, "stage");
+    row.probability = probability_field(csv, probability);
     verdicts.push_back(std::move(row));
   } while (csv.next_row());
   return verdicts;

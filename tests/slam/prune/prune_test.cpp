@@ -1,5 +1,6 @@
 #include "isotherm/slam/prune/prune.hpp"
 
+#include <cmath>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -57,6 +58,7 @@ TEST(Prune, SelfEdgesAreSetAsideByEveryMethod) {
       EXPECT_EQ(result.verdicts[k].edge, 4 + k) << name;
       EXPECT_EQ(result.verdicts[k].verdict, Verdict::ambiguous) << name;
       EXPECT_EQ(result.verdicts[k].stage, "self-edge") << name;
+      EXPECT_TRUE(std::isnan(result.verdicts[k].probability)) << name;
     }
     EXPECT_EQ(result.verdicts[1].edge, 5) << name;
     EXPECT_NE(result.verdicts[1].verdict, Verdict::prune) << name << ": one loop proves little";
@@ -85,6 +87,9 @@ TEST(Prune, ARepeatIsNoEvidenceAndHasTheVerdictOfItsOriginal) {
       EXPECT_EQ(copy.verdict, once[k].verdict) << name;
       EXPECT_EQ(copy.score, once[k].score) << name;
       EXPECT_EQ(copy.stage, "repeat") << name;
+      const bool stated = name == "consensus";
+      EXPECT_EQ(std::isnan(copy.probability), !stated) << name;
+      EXPECT_TRUE(!stated || copy.probability == once[k].probability) << name;
     }
     EXPECT_NE(result.warnings.back().find("61 edges repeat another one"), std::string::npos);
   }
@@ -173,7 +178,7 @@ TEST(PruneMethods, GraphsOfAnyDimensionWithTheirOwnRoles) {
 TEST(PruneMethods, SameVerdictsForAnyNumberOfThreads) {
   const auto city = simulate_city({.poses = 400, .measurements = {.loops = 150}, .seed = 5});
   const auto bad = corrupt(city.graph, city.truth, {.count = 150, .seed = 5});
-  for (const char* method : {"heat", "lap-line"}) {
+  for (const char* method : {"consensus", "heat", "lap-line"}) {
     const auto one = prune(bad.graph, prune_method(method), {.threads = 1});
     const auto three = prune(bad.graph, prune_method(method), {.threads = 3});
     for (std::size_t k = 0; k < one.verdicts.size(); ++k) {

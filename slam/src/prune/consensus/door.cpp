@@ -1,11 +1,17 @@
 #include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
-#include "isotherm/slam/graph/information.hpp"
 #include "isotherm/slam/prune/prune.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
+
+constexpr double kMeaningless = 2.0;  // deviations of the prior, each a factor of ten in errors
 
 // Whether covariances can be had of odometry and of loops: some matrix of each says
 // something.
@@ -30,24 +36,19 @@ PruneResult prune_by_structure(const PoseGraph<Pose>& graph, const EdgeRoles& ro
   return result;
 }
 
-// Odometry as consensus can chain it, and a warning for what had to be changed.
-template <class Pose>
-PoseGraph<Pose> with_usable_odometry(const PoseGraph<Pose>& graph,
-                                     const std::vector<Index>& unusable,
-                                     std::vector<std::string>& warnings) {
-  PoseGraph<Pose> repaired = graph;
-  for (const Index k : unusable) {
-    auto& information = repaired.constraints[k].information;
-    information = usable_information<Pose::kDof>(information);
+// Factors on what the file states that are beyond what is believed of files.
+void warn_of_meaningless(const ConsensusResult& result, std::vector<std::string>& warnings) {
+  const std::pair<const char*, double> scales[] = {
+      {"odometry", result.odometry_scale},
+      {"loops", result.loop_scale},
+      {"rotation against translation", result.rotation_scale}};
+  for (const auto& [what, scale] : scales) {
+    if (prior_deviations(scale) <= kMeaningless) continue;
+    std::ostringstream text;
+    text << "information of " << what << " says nothing: errors are " << std::setprecision(3)
+         << std::sqrt(scale) << " times as large as it states; learnt from the data instead";
+    warnings.push_back(text.str());
   }
-  const auto& first = graph.constraints[unusable.front()];
-  std::string warning = "odometry edge " + std::to_string(unusable.front()) + ", from vertex " +
-                        std::to_string(graph.ids[first.from]) + " to " +
-                        std::to_string(graph.ids[first.to]);
-  if (unusable.size() > 1) warning += ", and " + std::to_string(unusable.size() - 1) + " more";
-  warnings.push_back(warning +
-                     ": information matrix too near to a singular one; made less extreme");
-  return repaired;
 }
 
 }  // namespace
@@ -61,18 +62,13 @@ PruneResult prune_by(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
   }
   PruneResult result;
   result.method = ConsensusOptions::method();
-  const auto unusable = unusable_odometry(graph, roles);
-  if (unusable.empty()) {
-    result.consensus = consensus(graph, roles, options, run);
-  } else {
-    const auto repaired = with_usable_odometry(graph, unusable, result.warnings);
-    result.consensus = consensus(repaired, roles, options, run);
-  }
+  result.consensus = consensus(graph, roles, options, run);
   result.verdicts = std::move(result.consensus.verdicts);
   if (!result.consensus.settled) {
     result.warnings.push_back("consensus stopped after " + std::to_string(options.max_rounds) +
-                              " rounds with loops still in question");
+                              " moves with loops still in question");
   }
+  warn_of_meaningless(result.consensus, result.warnings);
   return result;
 }
 

@@ -11,7 +11,6 @@
 #include "isotherm/slam/prune/chi2_prune.hpp"
 #include "isotherm/slam/prune/consensus.hpp"
 #include "isotherm/slam/prune/curve_prune.hpp"
-#include "isotherm/slam/prune/evidence.hpp"
 #include "isotherm/slam/prune/heat_prune.hpp"
 #include "isotherm/slam/prune/kernel_prune.hpp"
 #include "isotherm/slam/prune/pcm.hpp"
@@ -23,9 +22,9 @@ namespace isotherm::slam {
 /// How false loop closures are found: a method with its options. This is the one list of
 /// methods; the first is the default. Each offers method(), its name, title(), what it is
 /// called in a sentence, validate(), visit_fields() and a door, detail::prune_by().
-using PruneOptions = std::variant<ConsensusOptions, EvidenceOptions, HeatPruneOptions,
-                                  Chi2PruneOptions, CurvePruneOptions, RrrOptions, PcmOptions,
-                                  ScOptions, DcsOptions, CauchyOptions, GncOptions>;
+using PruneOptions =
+    std::variant<ConsensusOptions, HeatPruneOptions, Chi2PruneOptions, CurvePruneOptions,
+                 RrrOptions, PcmOptions, ScOptions, DcsOptions, CauchyOptions, GncOptions>;
 
 /// Every method with its default options, in the order of the list.
 std::vector<PruneOptions> prune_methods();
@@ -49,7 +48,6 @@ struct PruneResult {
   spectral::EdgeVerdicts verdicts;    ///< one a candidate, in file order
   std::vector<HeatRound> rounds;      ///< method heat: one a scale
   ConsensusResult consensus;          ///< method consensus: all but the verdicts
-  EvidenceResult evidence;            ///< method evidence: all but the verdicts
   std::vector<std::string> warnings;  ///< what a user should know about the result
   double seconds = 0.0;               ///< wall time
 };

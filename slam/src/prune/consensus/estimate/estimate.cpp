@@ -15,15 +15,7 @@ constexpr double kSettled = 0.1;
 
 template <class Pose>
 Estimate<Pose>::Estimate(const ReducedGraph<Pose>& graph)
-    : graph_(graph), poses_(graph.poses), component_(graph.chain) {
-  // Chains are numbered in order, but some may have no node.
-  Index previous = -1;
-  for (Index& chain : component_) {
-    if (chain != previous) ++component_count_;
-    previous = chain;
-    chain = component_count_ - 1;
-  }
-}
+    : graph_(graph), poses_(graph.poses), component_(graph.chain) {}
 
 template <class Pose>
 void Estimate<Pose>::lay_out(const std::vector<bool>& accepted) {
@@ -32,7 +24,6 @@ void Estimate<Pose>::lay_out(const std::vector<bool>& accepted) {
   join_components(used);
   equations_.emplace(used, spectral::FactorForm::supernodal);
   component_ = equations_->gauge().component;
-  component_count_ = equations_->gauge().component_count;
   laid_out_for_ = accepted;
 }
 

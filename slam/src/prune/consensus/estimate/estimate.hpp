@@ -79,9 +79,6 @@ class Estimate {
   /// Number of poses that are free, as of the last update.
   Index variable_count() const { return equations_->hessian().block_count(); }
 
-  /// Number of connected parts; each has one pose that is held.
-  Index component_count() const noexcept { return component_count_; }
-
  private:
   void lay_out(const std::vector<bool>& accepted);
   void linearize(const CovarianceScale& scale);
@@ -92,7 +89,6 @@ class Estimate {
   const ReducedGraph<Pose>& graph_;
   std::vector<Pose> poses_;
   std::vector<Index> component_;
-  Index component_count_ = 0;
   std::vector<bool> laid_out_for_;  // loops that the equations hold, after all steps
   std::vector<Index> used_loops_;   // of laid_out_for_, those between different nodes
   std::vector<double> weights_;

@@ -5,8 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include "prune/consensus/estimate/log_normal.hpp"
-
 namespace isotherm::slam::detail {
 namespace {
 
@@ -48,21 +46,7 @@ MapVolume<Pose>::MapVolume(const std::vector<Pose>& poses) {
   variance_.tail(turns).setConstant(angle * angle / (2.0 * kPi));
 }
 
-template <class Pose>
-Evidence weigh(const typename Pose::Tangent& r, const typename Pose::Matrix& S,
-               const MapVolume<Pose>& map) {
-  using Matrix = typename Pose::Matrix;
-  const Eigen::LLT<Matrix> factor(S);
-  Matrix wide = S;
-  wide.diagonal() += map.variance();
-  const Eigen::LLT<Matrix> wide_factor(wide);
-  const double chi2 = r.dot(factor.solve(r));
-  return {chi2, 0.5 * (log_determinant(wide_factor) - log_determinant(factor) - chi2)};
-}
-
 template class MapVolume<Pose2>;
 template class MapVolume<Pose3>;
-template Evidence weigh(const Pose2::Tangent&, const Pose2::Matrix&, const MapVolume<Pose2>&);
-template Evidence weigh(const Pose3::Tangent&, const Pose3::Matrix&, const MapVolume<Pose3>&);
 
 }  // namespace isotherm::slam::detail

@@ -2,8 +2,6 @@
 
 #include <vector>
 
-#include <Eigen/Cholesky>
-
 #include "isotherm/slam/graph/pose.hpp"
 
 namespace isotherm::slam::detail {
@@ -26,18 +24,5 @@ class MapVolume {
  private:
   Tangent variance_;
 };
-
-/// How a loop's residual r compares with a prediction of covariance S.
-struct Evidence {
-  double chi2 = 0.0;  ///< r' S^-1 r
-  /// Log density of r under the prediction, limited to the map, relative to
-  /// anywhere: -chi2/2 + log(|S + M| / |S|)/2. Tends to -chi2/2 for a prediction
-  /// that says nothing.
-  double log_ratio = 0.0;
-};
-
-template <class Pose>
-Evidence weigh(const typename Pose::Tangent& r, const typename Pose::Matrix& S,
-               const MapVolume<Pose>& map);
 
 }  // namespace isotherm::slam::detail

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include <Eigen/Cholesky>
 #include <nanoflann.hpp>
 
 namespace isotherm::slam::detail {
@@ -58,11 +59,17 @@ class AcceptedLoops {
   nanoflann::KDTreeSingleIndexAdaptor<Distance, LoopEnds, 2, std::size_t> tree_;
 };
 
+template <class Pose>
+double pair_chi2(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
+                 const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured) {
+  const auto [r, S] = pair_residual(graph, scale, known, measured);
+  return r.dot(Eigen::LLT<typename Pose::Matrix>(S).solve(r));
+}
+
 }  // namespace
 
 template <class Pose>
 std::vector<std::vector<Index>> name_conflicts(const ReducedGraph<Pose>& graph,
-                                               const MapVolume<Pose>& map,
                                                const CovarianceScale& scale, double gate,
                                                const std::vector<bool>& accepted,
                                                const std::vector<bool>& refuted) {
@@ -84,7 +91,7 @@ std::vector<std::vector<Index>> name_conflicts(const ReducedGraph<Pose>& graph,
     const auto near = group->second.nearest(loops[k].from, loops[k].to);
     auto& named = conflicts[k];
     std::ranges::copy_if(near, std::back_inserter(named), [&](Index other) {
-      return compare(graph, scale, loops[other], loops[k], map).chi2 > gate;
+      return pair_chi2(graph, scale, loops[other], loops[k]) > gate;
     });
     if (named.empty()) named = near;
     named.resize(std::min(named.size(), kNamed));
@@ -93,12 +100,10 @@ std::vector<std::vector<Index>> name_conflicts(const ReducedGraph<Pose>& graph,
 }
 
 template std::vector<std::vector<Index>> name_conflicts(const ReducedGraph<Pose2>&,
-                                                        const MapVolume<Pose2>&,
                                                         const CovarianceScale&, double,
                                                         const std::vector<bool>&,
                                                         const std::vector<bool>&);
 template std::vector<std::vector<Index>> name_conflicts(const ReducedGraph<Pose3>&,
-                                                        const MapVolume<Pose3>&,
                                                         const CovarianceScale&, double,
                                                         const std::vector<bool>&,
                                                         const std::vector<bool>&);

@@ -10,12 +10,12 @@ namespace isotherm::slam::detail {
 /// empty for a loop that is not refuted.
 ///
 /// Of the accepted loops whose ends lie nearest to the refuted one's along odometry,
-/// those that contradict it alone, with the odometry between the ends; where none
-/// does, the nearest, which contradict it together with the rest. Only loops between
+/// those that contradict it alone, with the odometry between the ends: pair_residual() has a
+/// chi-squared beyond `gate`. Where none does, the nearest, which contradict it together with
+/// the rest. Only loops between
 /// the same chains are looked at. O(q log q) on graphs whose loops are spread evenly.
 template <class Pose>
 std::vector<std::vector<Index>> name_conflicts(const ReducedGraph<Pose>& graph,
-                                               const MapVolume<Pose>& map,
                                                const CovarianceScale& scale, double gate,
                                                const std::vector<bool>& accepted,
                                                const std::vector<bool>& refuted);

@@ -50,27 +50,6 @@ PairResidual<Pose> pair_residual(const ReducedGraph<Pose>& graph, const Covarian
   return {r, measured.measured.covariance + j * predicted.covariance * j.transpose()};
 }
 
-template <class Pose>
-Evidence compare(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
-                 const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured,
-                 const MapVolume<Pose>& map) {
-  const auto [r, S] = pair_residual(graph, scale, known, measured);
-  return weigh(r, S, map);
-}
-
-template <class Pose>
-std::vector<Evidence> compare_pairs(const ReducedGraph<Pose>& graph,
-                                    const std::vector<std::pair<Index, Index>>& pairs,
-                                    const MapVolume<Pose>& map, const CovarianceScale& scale) {
-  const auto loops = forward_loops(graph, scale);
-  std::vector<Evidence> evidence;
-  evidence.reserve(pairs.size());
-  for (const auto& [first, second] : pairs) {
-    evidence.push_back(compare(graph, scale, loops[first], loops[second], map));
-  }
-  return evidence;
-}
-
 template std::vector<ForwardLoop<Pose2>> forward_loops(const ReducedGraph<Pose2>&,
                                                        const CovarianceScale&);
 template std::vector<ForwardLoop<Pose3>> forward_loops(const ReducedGraph<Pose3>&,
@@ -81,18 +60,5 @@ template PairResidual<Pose2> pair_residual(const ReducedGraph<Pose2>&, const Cov
                                            const ForwardLoop<Pose2>&, const ForwardLoop<Pose2>&);
 template PairResidual<Pose3> pair_residual(const ReducedGraph<Pose3>&, const CovarianceScale&,
                                            const ForwardLoop<Pose3>&, const ForwardLoop<Pose3>&);
-template Evidence compare(const ReducedGraph<Pose2>&, const CovarianceScale&,
-                          const ForwardLoop<Pose2>&, const ForwardLoop<Pose2>&,
-                          const MapVolume<Pose2>&);
-template Evidence compare(const ReducedGraph<Pose3>&, const CovarianceScale&,
-                          const ForwardLoop<Pose3>&, const ForwardLoop<Pose3>&,
-                          const MapVolume<Pose3>&);
-
-template std::vector<Evidence> compare_pairs(const ReducedGraph<Pose2>&,
-                                             const std::vector<std::pair<Index, Index>>&,
-                                             const MapVolume<Pose2>&, const CovarianceScale&);
-template std::vector<Evidence> compare_pairs(const ReducedGraph<Pose3>&,
-                                             const std::vector<std::pair<Index, Index>>&,
-                                             const MapVolume<Pose3>&, const CovarianceScale&);
 
 }  // namespace isotherm::slam::detail

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "prune/consensus/estimate/estimate.hpp"
-#include "prune/consensus/estimate/map_volume.hpp"
 #include "prune/consensus/estimate/reduced_graph.hpp"
 
 namespace isotherm::slam::detail {
@@ -42,17 +40,5 @@ struct PairResidual {
 template <class Pose>
 PairResidual<Pose> pair_residual(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
                                  const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured);
-
-/// How pair_residual() compares with a residual anywhere on the map.
-template <class Pose>
-Evidence compare(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
-                 const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured,
-                 const MapVolume<Pose>& map);
-
-/// compare() for each of `pairs` of loops, the first as the known one.
-template <class Pose>
-std::vector<Evidence> compare_pairs(const ReducedGraph<Pose>& graph,
-                                    const std::vector<std::pair<Index, Index>>& pairs,
-                                    const MapVolume<Pose>& map, const CovarianceScale& scale);
 
 }  // namespace isotherm::slam::detail

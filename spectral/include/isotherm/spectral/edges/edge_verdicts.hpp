@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,8 @@ struct EdgeVerdict {
   double score = 0.0;      ///< larger is more suspicious
   double threshold = 0.0;  ///< the edge is pruned where score > threshold
   std::string stage;       ///< scale, round or test that decided
+  /// Of the edge being true, in [0, 1], where the method states one; else not a number.
+  double probability = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// One verdict per candidate, in order of `edge`.
@@ -36,6 +39,9 @@ using EdgeVerdicts = std::vector<EdgeVerdict>;
 
 /// How many of `verdicts` equal `verdict`.
 std::int64_t count(const EdgeVerdicts& verdicts, Verdict verdict);
+
+/// Whether the method that decided stated a probability of any edge.
+bool state_probabilities(const EdgeVerdicts& verdicts);
 
 /// Whether the edge stays: where it is not proven either way, as asked.
 bool stays(const EdgeVerdict& verdict, bool keep_ambiguous);

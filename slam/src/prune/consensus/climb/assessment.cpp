@@ -1,0 +1,224 @@
+#include "prune/consensus/climb/assessment.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "isotherm/base/statistics.hpp"
+#include "prune/consensus/objective/loop_gain.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+constexpr int kMostSteps = 12;        // of Gauss-Newton, weights included
+constexpr double kSameWeight = 0.05;  // of its log
+constexpr double kHopeless = 50.0;  // log odds against, by a bound, beyond which none is solved for
+constexpr int kFixedPointSteps = 30;
+
+}  // namespace
+
+template <class Pose>
+Assessment<Pose>::Assessment(const Objective<Pose>& objective)
+    : objective_(objective),
+      graph_(objective.stated()),
+      estimate_(graph_.reduced),
+      odometry_(estimate_.layout()),
+      standings_(graph_.reduced.loops.size()),
+      covariances_(graph_.reduced.loops.size()) {}
+
+template <class Pose>
+void Assessment<Pose>::start_over() {
+  estimate_.restore(odometry_);
+  held_.clear();
+}
+
+template <class Pose>
+void Assessment<Pose>::restore(const Explanation<Pose>& before) {
+  estimate_.restore(before.layout);
+  if (held_ != before.accepted) held_.clear();
+}
+
+template <class Pose>
+void Assessment<Pose>::assess(Explanation<Pose>& now) {
+  rescale(now.shapes);
+  mixture_ = expected_mixture(now.scale.loops, now.shares);
+  find_peak(now);
+  near_ = objective_.near(estimate_.poses());
+  bound(now);
+  weigh(now);
+  add_prior(now.accepted);
+  now.layout = estimate_.layout();
+  now.evidence = objective_.evidence(now, graph_, estimate_, near_);
+}
+
+template <class Pose>
+void Assessment<Pose>::rescale(const Shapes<Pose>& shapes) {
+  if (shapes == shapes_) return;
+  graph_ = objective_.scaled(shapes);
+  shapes_ = shapes;
+  estimate_.restore(estimate_.layout());
+  held_.clear();
+}
+
+template <class Pose>
+void Assessment<Pose>::find_peak(Explanation<Pose>& now) {
+  weigh_new(now);
+  estimate_.weigh_loops(now.weights);
+  estimate_.settle(now.accepted, now.scale, kMostSteps, [&] { return reweigh(now); });
+}
+
+// Loops accepted since the last assessment, by what the others said of them.
+template <class Pose>
+void Assessment<Pose>::weigh_new(Explanation<Pose>& now) {
+  for (std::size_t k = 0; k < now.accepted.size(); ++k) {
+    if (!now.accepted[k] || held_.empty() || held_[k]) continue;
+    const auto& link = graph_.reduced.loops[k];
+    const auto prediction =
+        predict<Pose>(estimate_.residual(link), covariances_[k], link.covariance);
+    now.weights[k] = loop_gain<Pose>(prediction, mixture_).weight;
+  }
+}
+
+// Whether any weight changed.
+template <class Pose>
+bool Assessment<Pose>::reweigh(Explanation<Pose>& now) {
+  bool changed = false;
+  now.found = {};
+  now.scale_evidence = 0.0;
+  for (std::size_t k = 0; k < now.accepted.size(); ++k) {
+    if (!now.accepted[k]) continue;
+    const auto& link = graph_.reduced.loops[k];
+    const typename Pose::Tangent r = estimate_.residual(link);
+    const double chi2 =
+        r.dot(link.information * r) / now.scale.loops + uncertainty(now, static_cast<Index>(k));
+    const ErrorScale scale = error_scale(mixture_, chi2, Pose::kDof);
+    changed = changed || std::abs(std::log(scale.weight / now.weights[k])) > kSameWeight;
+    now.weights[k] = scale.weight;
+    now.scale_evidence += scale.evidence;
+    for (std::size_t j = 0; j < kScaleCount; ++j) now.found.loops[j] += scale.probability[j];
+  }
+  estimate_.weigh_loops(now.weights);
+  return changed;
+}
+
+// What is expected of the squared length of the error beyond that at the peak, in
+// deviations. As of the last assessment; of a loop accepted since, from what the others said.
+template <class Pose>
+double Assessment<Pose>::uncertainty(const Explanation<Pose>& now, Index loop) const {
+  const auto& link = graph_.reduced.loops[loop];
+  const auto J = residual_jacobian<Pose>(estimate_.residual(link));
+  const Matrix P = J * covariances_[loop] * J.transpose();
+  if (!held_.empty() && held_[loop]) return (link.information * P).trace() / now.scale.loops;
+  const double weight = now.weights[loop];
+  const Matrix own = link.covariance * now.scale.loops / weight;
+  return Eigen::LLT<Matrix>(own + P).solve(P).trace() / weight;
+}
+
+// Accepting loops only ever sharpens predictions, so that a covariance with fewer of them at the
+// same scale is an upper bound; that of odometry alone always is.
+template <class Pose>
+void Assessment<Pose>::bound(const Explanation<Pose>& now) {
+  bool still = !held_.empty() && held_scale_ == now.scale.odometry;
+  for (std::size_t k = 0; still && k < now.accepted.size(); ++k) {
+    still = now.accepted[k] || !held_[k];
+  }
+  for (std::size_t k = 0; !still && k < covariances_.size(); ++k) {
+    covariances_[k] = graph_.reduced.odometry_covariance[k] * now.scale.odometry;
+  }
+  held_ = now.accepted;
+  held_scale_ = now.scale.odometry;
+}
+
+// Of those that are hopeless even under the best covariance within their bound it is not solved
+// for.
+template <class Pose>
+void Assessment<Pose>::weigh(Explanation<Pose>& now) {
+  std::vector<Index> loops;
+  for (std::size_t k = 0; k < now.accepted.size(); ++k) {
+    const auto loop = static_cast<Index>(k);
+    if (!now.accepted[k]) standings_[k] = other_standing(now, loop, false);
+    const bool hopeful = standings_[k].connected && standings_[k].evidence > -kHopeless;
+    if (now.accepted[k] || hopeful) loops.push_back(loop);
+  }
+  const auto covariances = estimate_.relative_covariances(loops);
+  for (std::size_t i = 0; i < loops.size(); ++i) covariances_[loops[i]] = covariances[i];
+  find_redundancy(now);
+  for (const Index k : loops) {
+    standings_[k] = now.accepted[k] ? accepted_standing(now, k) : other_standing(now, k, true);
+  }
+}
+
+template <class Pose>
+typename Pose::Tangent Assessment<Pose>::redundancy(const Explanation<Pose>& now,
+                                                    Index loop) const {
+  const auto& link = graph_.reduced.loops[loop];
+  const auto J = residual_jacobian<Pose>(estimate_.residual(link));
+  const Matrix fitted = link.information * J * covariances_[loop] * J.transpose();
+  return (1.0 - now.weights[loop] / now.scale.loops * fitted.diagonal().array()).max(0.0);
+}
+
+template <class Pose>
+void Assessment<Pose>::find_redundancy(Explanation<Pose>& now) const {
+  auto constraints = static_cast<double>(graph_.reduced.steps.size());
+  now.redundancy = {};
+  for (std::size_t k = 0; k < now.accepted.size(); ++k) {
+    if (!now.accepted[k] || graph_.reduced.loops[k].a == graph_.reduced.loops[k].b) continue;
+    now.redundancy.loops += redundancy(now, static_cast<Index>(k));
+    constraints += 1.0;
+  }
+  const double each = constraints - static_cast<double>(estimate_.variable_count());
+  now.redundancy.odometry = (each - now.redundancy.loops.array()).max(0.0);
+}
+
+// Given all loops but itself, in what is known of the accuracy of odometry, too.
+template <class Pose>
+Standing Assessment<Pose>::accepted_standing(const Explanation<Pose>& now, Index loop) const {
+  const auto& link = graph_.reduced.loops[loop];
+  const auto prediction =
+      predict_without<Pose>(estimate_.residual(link), covariances_[loop], link.covariance,
+                            now.weights[loop] / now.scale.loops);
+  const typename Pose::Tangent own = redundancy(now, loop);
+  const Redundancy<Pose> others{
+      .odometry = (now.redundancy.odometry.array() - (1.0 - own.array())).max(0.0),
+      .loops = (now.redundancy.loops - own).cwiseMax(0.0)};
+  const auto gain = loop_gain<Pose>(prediction, mixture_, objective_.scale_deviation(others));
+  // Alone it would join parts that lie anywhere on the map.
+  const double density = std::max(gain.log_density, -objective_.log_volume() - 0.5 * gain.chi2);
+  return {.connected = true, .chi2 = gain.chi2, .evidence = density - log_alternative(loop)};
+}
+
+template <class Pose>
+Standing Assessment<Pose>::other_standing(const Explanation<Pose>& now, Index loop,
+                                          bool solved) const {
+  const auto& link = graph_.reduced.loops[loop];
+  Standing standing{.parts = estimate_.parts(link), .connected = estimate_.connected(link)};
+  double density = -objective_.log_volume();
+  if (standing.connected) {
+    auto prediction = predict<Pose>(estimate_.residual(link), covariances_[loop], link.covariance);
+    if (!solved) prediction = at_best<Pose>(prediction, mixture_.scale);
+    const auto gain =
+        loop_gain<Pose>(prediction, mixture_, objective_.scale_deviation(now.redundancy));
+    standing.chi2 = gain.chi2;
+    density = gain.log_density;
+  }
+  standing.evidence = density - log_alternative(loop);
+  return standing;
+}
+
+// Of the share of true loops as expected, of which nothing is known before (Beta).
+template <class Pose>
+void Assessment<Pose>::add_prior(const std::vector<bool>& accepted) {
+  double prior = 0.0;
+  for (int step = 0; step < kFixedPointSteps; ++step) {
+    double kept = 1.0;
+    for (std::size_t k = 0; k < standings_.size(); ++k) {
+      kept += accepted[k] ? 1.0 : 1.0 / (1.0 + std::exp(-standings_[k].evidence - prior));
+    }
+    prior = std::log(kept / (2.0 + static_cast<double>(standings_.size()) - kept));
+  }
+  for (auto& standing : standings_) standing.log_odds = standing.evidence + prior;
+}
+
+template class Assessment<Pose2>;
+template class Assessment<Pose3>;
+
+}  // namespace isotherm::slam::detail

@@ -1,0 +1,227 @@
+#include "prune/consensus/climb/climb.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "isotherm/base/error.hpp"
+#include "prune/consensus/climb/groups.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+// Nats by which an explanation must be better to go on, and nats a loop for a lesson to matter.
+constexpr double kBetter = 0.1;
+constexpr double kTelling = 1e-3;
+constexpr int kPatience = 8;  // moves in a row that may find nothing better
+constexpr std::size_t kMoreTelling =
+    2;  // times as many loops have more to tell of how accurate they are
+
+}  // namespace
+
+template <class Pose>
+Climb<Pose>::Climb(const Objective<Pose>& objective, const ConsensusOptions& options,
+                   const ProgressCallback& progress)
+    : objective_(objective), options_(options), progress_(progress), assessment_(objective) {}
+
+template <class Pose>
+Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
+  start(scale);
+  double before = best_.evidence;
+  do {
+    before = best_.evidence;
+    std::fill(dropped_.begin(), dropped_.end(), false);
+    grow();
+  } while (best_.evidence > before + kBetter);
+  peaks_.insert(best_.accepted);
+  return std::move(best_);
+}
+
+template <class Pose>
+Explanation<Pose> Climb<Pose>::nothing() {
+  start({});
+  return now_;
+}
+
+// Whether an earlier climb ended with these loops: it has learnt what there is to learn from them.
+template <class Pose>
+bool Climb<Pose>::seen_before() const {
+  return peaks_.contains(now_.accepted);
+}
+
+template <class Pose>
+void Climb<Pose>::start(const CovarianceScale& scale) {
+  const std::size_t loops = objective_.stated().reduced.loops.size();
+  now_ = {.accepted = std::vector<bool>(loops, false), .scale = scale};
+  now_.shares.loops[0] = static_cast<double>(loops);
+  now_.weights.assign(loops, 1.0);
+  dropped_.assign(loops, false);
+  learnt_from_ = 0;
+  assessment_.start_over();
+  assessment_.assess(now_);
+  predict_runs();
+  best_ = now_;
+}
+
+template <class Pose>
+std::vector<Standing> Climb<Pose>::standings(const Explanation<Pose>& explanation) {
+  now_ = explanation;
+  assessment_.restore(now_);
+  for (int k = 0; k < 2; ++k) assessment_.assess(now_);  // weights by the covariances there
+  return assessment_.standings();
+}
+
+template <class Pose>
+void Climb<Pose>::grow() {
+  int vain = 0;  // moves since the best explanation so far
+  for (int round = 0; round < options_.max_rounds; ++round) {
+    tell_progress();
+    const double before = best_.evidence;
+    if (!move()) return;
+    vain = best_.evidence > before ? 0 : vain + 1;
+    if (vain == kPatience) return;
+  }
+  settled_ = false;
+}
+
+// False where no move is left.
+template <class Pose>
+bool Climb<Pose>::move() {
+  const Selection out = misfits();
+  const Group batch = next_batch();
+  const double dropping = gain_of_dropping(out);
+  if (accepted_count() >= kMoreTelling * learnt_from_ && learn_more_than(dropping)) return true;
+  if (!batch.loops.empty() && batch.gain > dropping) {
+    accept(batch.loops);
+  } else if (!out.empty()) {
+    if (!learn_more_than(dropping)) drop(out);
+  } else {
+    return !seen_before() && learn_more_than(0.0);
+  }
+  return true;
+}
+
+template <class Pose>
+std::size_t Climb<Pose>::accepted_count() const {
+  return static_cast<std::size_t>(std::ranges::count(now_.accepted, true));
+}
+
+template <class Pose>
+void Climb<Pose>::assess() {
+  assessment_.assess(now_);
+  if (now_.evidence > best_.evidence) best_ = now_;
+}
+
+// Of the accepted loops that lower the evidence the worse half, and all that are at least half as
+// bad as the worst: each one dropped changes what is predicted of the rest.
+template <class Pose>
+typename Climb<Pose>::Selection Climb<Pose>::misfits() const {
+  const auto& standings = assessment_.standings();
+  std::vector<double> worst;
+  for (std::size_t k = 0; k < standings.size(); ++k) {
+    if (now_.accepted[k] && standings[k].log_odds < 0.0) worst.push_back(standings[k].log_odds);
+  }
+  if (worst.empty()) return {};
+  std::ranges::sort(worst);
+  const double most = std::max(0.5 * worst.front(), worst[worst.size() / 2]);
+  Selection out;
+  for (std::size_t k = 0; k < standings.size(); ++k) {
+    if (now_.accepted[k] && standings[k].log_odds <= most) out.push_back(static_cast<Index>(k));
+  }
+  return out;
+}
+
+template <class Pose>
+double Climb<Pose>::gain_of_dropping(const Selection& loops) const {
+  double gain = 0.0;
+  for (const Index k : loops) gain -= assessment_.standings()[k].log_odds;
+  return gain;
+}
+
+template <class Pose>
+void Climb<Pose>::drop(const Selection& loops) {
+  for (const Index k : loops) {
+    now_.accepted[k] = false;
+    dropped_[k] = true;
+  }
+  assess();
+  note(0, loops.size());
+}
+
+template <class Pose>
+Group Climb<Pose>::next_batch() const {
+  std::vector<bool> open(dropped_.size());
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    open[k] = !now_.accepted[k] && !dropped_[k];
+  }
+  auto groups = gaining_groups(objective_.runs(), open, assessment_.standings(), run_density_,
+                               [&](Index k) { return assessment_.log_alternative(k); });
+  return most_certain(std::move(groups), accepted_count());
+}
+
+template <class Pose>
+void Climb<Pose>::accept(const Selection& loops) {
+  for (const Index k : loops) now_.accepted[k] = true;
+  assess();
+  note(loops.size(), 0);
+}
+
+// Whether there was anything to learn that gains more than this.
+template <class Pose>
+bool Climb<Pose>::learn_more_than(double gain) {
+  if (!options_.calibrate) return false;
+  learnt_from_ = std::max<std::size_t>(accepted_count(), 1);
+  const double telling = kTelling * static_cast<double>(accepted_count());
+  const double least = std::max({gain, kBetter, telling});
+  for (const bool same_shapes : {false, true}) {
+    const Lesson<Pose> lesson = learn(assessment_, now_, same_shapes);
+    if (lesson.gain > least && try_lesson(lesson)) return true;
+  }
+  return false;
+}
+
+// Whether it is better. Scales at which the normal equations break down explain nothing.
+template <class Pose>
+bool Climb<Pose>::try_lesson(const Lesson<Pose>& lesson) {
+  const Explanation<Pose> before = now_;
+  now_.scale = lesson.scale;
+  now_.shapes = lesson.shapes;
+  now_.shares = lesson.shares;
+  bool better = false;
+  try {
+    assess();
+    better = now_.evidence > before.evidence + kBetter;
+  } catch (const NumericalError&) {
+    better = false;
+  }
+  if (!better) {
+    now_ = before;
+    assessment_.restore(now_);
+    assessment_.assess(now_);
+  }
+  predict_runs();
+  return better;
+}
+
+template <class Pose>
+void Climb<Pose>::predict_runs() {
+  run_density_ = objective_.runs().log_density(assessment_.graph(), now_.scale);
+}
+
+template <class Pose>
+void Climb<Pose>::note(std::size_t accepted, std::size_t dropped) {
+  moves_.push_back({.accepted = static_cast<std::int64_t>(accepted),
+                    .dropped = static_cast<std::int64_t>(dropped),
+                    .in_force = std::ranges::count(now_.accepted, true)});
+}
+
+template <class Pose>
+void Climb<Pose>::tell_progress() const {
+  if (!progress_) return;
+  const auto kept = static_cast<std::uint64_t>(std::ranges::count(now_.accepted, true));
+  if (!progress_({"consensus", kept, now_.accepted.size()})) throw Cancelled();
+}
+
+template class Climb<Pose2>;
+template class Climb<Pose3>;
+
+}  // namespace isotherm::slam::detail

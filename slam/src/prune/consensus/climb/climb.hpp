@@ -1,0 +1,75 @@
+#pragma once
+
+#include <set>
+#include <vector>
+
+#include "isotherm/slam/prune/consensus.hpp"
+#include "prune/consensus/climb/assessment.hpp"
+#include "prune/consensus/climb/groups.hpp"
+#include "prune/consensus/climb/learn.hpp"
+
+namespace isotherm::slam::detail {
+
+/// Climbs to an explanation of higher evidence, one move after the other: accept the loops and
+/// the runs of loops that raise it, the most certain first, since every one accepted sharpens
+/// what is predicted of the rest; where some lower it, drop the worst or learn the scales and
+/// the tail from what is accepted, whichever gains more.
+template <class Pose>
+class Climb {
+ public:
+  using Selection = std::vector<Index>;
+
+  /// All must outlive this object.
+  Climb(const Objective<Pose>& objective, const ConsensusOptions& options,
+        const ProgressCallback& progress);
+
+  /// Climbs from nothing accepted, with `start` as the factors on the covariances; the best
+  /// explanation on the way.
+  Explanation<Pose> from(const CovarianceScale& start);
+
+  /// Nothing accepted, the covariances as stated.
+  Explanation<Pose> nothing();
+
+  /// What each loop is worth given all others of an explanation.
+  std::vector<Standing> standings(const Explanation<Pose>& explanation);
+
+  /// What the climbs did, and whether all ended.
+  const std::vector<ConsensusMove>& moves() const noexcept { return moves_; }
+  bool settled() const noexcept { return settled_; }
+
+ private:
+  void start(const CovarianceScale& scale);
+  bool seen_before() const;
+  void grow();
+  bool move();
+  void assess();
+  std::size_t accepted_count() const;
+  Selection misfits() const;
+  double gain_of_dropping(const Selection& loops) const;
+  void drop(const Selection& loops);
+  Group next_batch() const;
+  void accept(const Selection& loops);
+  bool learn_more_than(double gain);
+  bool try_lesson(const Lesson<Pose>& lesson);
+  void predict_runs();
+  void note(std::size_t accepted, std::size_t dropped);
+  void tell_progress() const;
+
+  const Objective<Pose>& objective_;
+  const ConsensusOptions& options_;
+  const ProgressCallback& progress_;
+  Assessment<Pose> assessment_;
+  Explanation<Pose> now_;
+  Explanation<Pose> best_;
+  std::vector<double> run_density_;    // log p(z | the loop before in its run)
+  std::set<std::vector<bool>> peaks_;  // loops with which climbs ended
+  std::vector<bool> dropped_;          // since the climb last rose; not tried again
+  std::size_t learnt_from_ = 0;        // loops, at the last lesson
+  std::vector<ConsensusMove> moves_;
+  bool settled_ = true;
+};
+
+extern template class Climb<Pose2>;
+extern template class Climb<Pose3>;
+
+}  // namespace isotherm::slam::detail

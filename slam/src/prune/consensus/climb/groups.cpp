@@ -1,0 +1,113 @@
+#include "prune/consensus/climb/groups.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+#include "graph/find_root.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+// Groups accepted at once are all true with even odds at least, or false as rarely as one in many
+// of those in force, of which each move drops what does not fit.
+constexpr double kMostExpectedFalse = 0.5;
+constexpr double kFalseShare = 1e-3;
+
+// Every loop accepted sharpens what is predicted of the rest and tells how accurate they are.
+constexpr std::size_t kGrowth = 3;
+constexpr std::size_t kFew = 10;  // loops, that tell nothing of it
+
+template <class Pose>
+std::vector<std::vector<Index>> runs_of(const Runs<Pose>& runs, const std::vector<bool>& open,
+                                        const std::vector<double>& run_density,
+                                        const std::function<double(Index)>& alternative) {
+  std::vector<Index> parent(open.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    const auto loop = static_cast<Index>(k);
+    const Index before = runs.before(loop);
+    if (before == Runs<Pose>::kNone || !open[k] || !open[before]) continue;
+    if (run_density[k] > alternative(loop)) {
+      parent[find_root(parent, loop)] = find_root(parent, before);
+    }
+  }
+  std::vector<std::vector<Index>> groups(open.size());
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    const auto loop = static_cast<Index>(k);
+    if (open[k]) groups[find_root(parent, loop)].push_back(loop);
+  }
+  std::erase_if(groups, [](const auto& group) { return group.empty(); });
+  return groups;
+}
+
+// Each part by itself, by its number.
+std::vector<Index> numbered_parts(const std::vector<Group>& groups) {
+  Index count = 0;
+  for (const Group& group : groups) {
+    count = std::max({count, group.parts.first + 1, group.parts.second + 1});
+  }
+  std::vector<Index> parent(count);
+  std::iota(parent.begin(), parent.end(), 0);
+  return parent;
+}
+
+}  // namespace
+
+template <class Pose>
+std::vector<Group> gaining_groups(const Runs<Pose>& runs, const std::vector<bool>& open,
+                                  const std::vector<Standing>& standings,
+                                  const std::vector<double>& run_density,
+                                  const std::function<double(Index)>& alternative) {
+  std::vector<Group> gaining;
+  for (auto& loops : runs_of(runs, open, run_density, alternative)) {
+    const Index seed =
+        *std::ranges::max_element(loops, {}, [&](Index k) { return standings[k].evidence; });
+    double gain = standings[seed].log_odds - standings[seed].evidence;
+    for (const Index k : loops) {
+      double evidence = standings[k].evidence;
+      const Index before = runs.before(k);
+      if (k != seed && before != Runs<Pose>::kNone && std::ranges::binary_search(loops, before)) {
+        evidence = std::max(evidence, run_density[k] - alternative(k));
+      }
+      gain += evidence;
+    }
+    if (gain > 0.0) {
+      gaining.push_back({std::move(loops), gain, standings[seed].connected, standings[seed].parts});
+    }
+  }
+  return gaining;
+}
+
+Group most_certain(std::vector<Group> groups, std::size_t accepted) {
+  std::ranges::stable_sort(groups, std::greater{}, &Group::gain);
+  Group all;
+  std::vector<Index> part = numbered_parts(groups);
+  double expected_false = 0.0;
+  const double most_false =
+      std::max(kMostExpectedFalse, kFalseShare * static_cast<double>(accepted));
+  for (const auto& [members, gain, connected, parts] : groups) {
+    expected_false += 1.0 / (1.0 + std::exp(gain));
+    const bool many = all.loops.size() + members.size() > kGrowth * std::max(accepted, kFew);
+    if (!all.loops.empty() && (many || expected_false > most_false)) break;
+    if (!connected) {
+      const Index first = find_root(part, parts.first);
+      const Index second = find_root(part, parts.second);
+      if (first == second) continue;
+      part[first] = second;
+    }
+    all.loops.insert(all.loops.end(), members.begin(), members.end());
+    all.gain += gain;
+  }
+  return all;
+}
+
+template std::vector<Group> gaining_groups(const Runs<Pose2>&, const std::vector<bool>&,
+                                           const std::vector<Standing>&, const std::vector<double>&,
+                                           const std::function<double(Index)>&);
+template std::vector<Group> gaining_groups(const Runs<Pose3>&, const std::vector<bool>&,
+                                           const std::vector<Standing>&, const std::vector<double>&,
+                                           const std::function<double(Index)>&);
+
+}  // namespace isotherm::slam::detail

@@ -1,0 +1,194 @@
+#include "prune/consensus/climb/learn.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "prune/consensus/objective/scale_prior.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+// Beyond, double precision has no digits left for the rest of the graph.
+const double kMostScale = std::log(1e8);
+// Of a coordinate against the others: a deviation of the prior. Contracted odometry is no longer
+// linear within deviations that are farther apart.
+constexpr double kMostOwn = kScaleDeviation;
+constexpr double kLeastRedundancy = 1e-6;  // less is rounding
+constexpr int kRepetitions = 10;           // of expectation maximisation, from the prior
+
+// The log of the likeliest factor on variances of this cost and redundancy, to first order about
+// cost over redundancy, drawn towards zero by the prior. Of nothing redundant nothing is told.
+double drawn_in(double cost, double redundancy) {
+  if (redundancy < kLeastRedundancy) return 0.0;
+  const double precision = 0.5 * redundancy;
+  const double least = -2.0 * kMostScale;
+  const double peak = cost > 0.0 ? std::max(std::log(cost / redundancy), least) : least;
+  return peak * precision / (precision + 1.0 / (kScaleDeviation * kScaleDeviation));
+}
+
+/// Measurements of one kind, by coordinate.
+template <class Tangent>
+struct Component {
+  Tangent cost;  // in the file's units
+  Tangent redundancy;
+
+  double evidence(const Tangent& logs) const {
+    return -0.5 * (cost.dot((-logs).array().exp().matrix()) + redundancy.dot(logs)) +
+           log_scale_peak(logs, redundancy);
+  }
+
+  // The same with each coordinate's the mean of its part, translation or rotation.
+  Component by_part(int dimensions) const {
+    const auto turns = cost.size() - dimensions;
+    Component parts = *this;
+    for (Tangent* of : {&parts.cost, &parts.redundancy}) {
+      of->head(dimensions).setConstant(of->head(dimensions).mean());
+      of->tail(turns).setConstant(of->tail(turns).mean());
+    }
+    return parts;
+  }
+
+  // Logs of the factors where the evidence has its peak. Correlated coordinates have their cost
+  // together: where one's is negative it cannot be told apart.
+  Tangent likeliest(const Tangent& before, bool same_shapes) const {
+    if (redundancy.sum() < 1.0 || !(cost.sum() > 0.0)) return before;
+    if (same_shapes) {
+      const Tangent own = before.array() - before.mean();
+      const double scale = drawn_in(cost.dot((-own).array().exp().matrix()), redundancy.sum());
+      return (scale + own.array()).max(-kMostScale).min(kMostScale);
+    }
+    const double common = drawn_in(cost.sum(), redundancy.sum());
+    const Tangent one = Tangent::Constant(std::clamp(common, -kMostScale, kMostScale));
+    if (cost.minCoeff() < 0.0) return one;
+    const Tangent each = by_coordinate();
+    return evidence(each) > evidence(one) ? each : one;
+  }
+
+ private:
+  // A factor of all coordinates and one of each take turns. One that is as small as it may be tells
+  // nothing of the others: across the floor that a robot drives on, nothing is measured.
+  Tangent by_coordinate() const {
+    double common = 0.0;
+    Tangent own = Tangent::Zero();
+    for (int k = 0; k < kRepetitions; ++k) {
+      const Tangent telling = (own.array() > -kMostOwn).template cast<double>();
+      common = drawn_in(cost.cwiseProduct(telling).dot((-own).array().exp().matrix()),
+                        redundancy.dot(telling));
+      for (Eigen::Index d = 0; d < own.size(); ++d) {
+        const double likeliest = drawn_in(cost[d] * std::exp(-common), redundancy[d]);
+        own[d] = std::clamp(likeliest, -kMostOwn, kMostOwn);
+      }
+    }
+    return (common + own.array()).max(-kMostScale).min(kMostScale);
+  }
+};
+
+/// Of a loop.
+template <class Pose>
+struct Residual {
+  double chi2() const { return parts.sum(); }
+
+  typename Pose::Tangent parts;  // of chi-squared, by coordinate, in the file's units
+  double redundancy = 0.0;
+  double weight = 1.0;
+};
+
+template <class Pose>
+std::vector<Residual<Pose>> residuals_of(const Assessment<Pose>& assessment,
+                                         const Explanation<Pose>& explanation) {
+  std::vector<Residual<Pose>> residuals;
+  for (std::size_t k = 0; k < explanation.accepted.size(); ++k) {
+    const auto& loop = assessment.graph().loops[k];
+    if (!explanation.accepted[k] || loop.a == loop.b) continue;
+    const typename Pose::Tangent r = assessment.estimate().residual(loop);
+    residuals.push_back({r.cwiseProduct(loop.information * r),
+                         assessment.redundancy(explanation, static_cast<Index>(k)).sum(),
+                         explanation.weights[k]});
+  }
+  return residuals;
+}
+
+// A residual counts as far as it is redundant: the rest of it was fitted.
+template <class Pose>
+ScaleShares likeliest_shares(const std::vector<Residual<Pose>>& residuals, double scale) {
+  ScaleShares shares;
+  for (int k = 0; k < kRepetitions; ++k) {
+    const ScaleMixture mixture = expected_mixture(scale, shares);
+    shares = {};
+    for (const auto& residual : residuals) {
+      const ErrorScale error = error_scale(mixture, residual.chi2() / scale, residual.redundancy);
+      for (std::size_t j = 0; j < kScaleCount; ++j) {
+        shares.loops[j] += error.probability[j] * residual.redundancy / Pose::kDof;
+      }
+    }
+  }
+  return shares;
+}
+
+template <class Pose>
+double log_likelihood(const ScaleMixture& mixture, const std::vector<Residual<Pose>>& residuals) {
+  double sum = 0.0;
+  for (const auto& residual : residuals) {
+    const double chi2 = residual.chi2() / mixture.scale;
+    const ErrorScale error = error_scale(mixture, chi2, residual.redundancy);
+    sum += error.evidence - 0.5 * error.weight * chi2;
+    for (std::size_t j = 0; j < kScaleCount; ++j) {
+      sum += error.probability[j] * mixture.log_share[j];
+    }
+  }
+  return sum;
+}
+
+// By coordinate, or where correlations leave one of them a negative cost by part.
+template <class Pose>
+Component<typename Pose::Tangent> told_apart(const Component<typename Pose::Tangent>& component) {
+  return component.cost.minCoeff() < 0.0 ? component.by_part(Pose::kDim) : component;
+}
+
+template <class Tangent>
+std::pair<double, Tangent> scale_and_shape(const Tangent& logs) {
+  return {std::exp(logs.mean()), (logs.array() - logs.mean()).exp()};
+}
+
+}  // namespace
+
+template <class Pose>
+Lesson<Pose> learn(const Assessment<Pose>& assessment, const Explanation<Pose>& explanation,
+                   bool same_shapes) {
+  using Tangent = typename Pose::Tangent;
+  const auto& [scale, shapes, redundancy] =
+      std::tie(explanation.scale, explanation.shapes, explanation.redundancy);
+  auto residuals = residuals_of(assessment, explanation);
+  Tangent loops_cost = Tangent::Zero();
+  for (const auto& residual : residuals) loops_cost += residual.weight * residual.parts;
+  const Tangent odometry_cost = assessment.estimate().odometry_cost();
+  const Component<Tangent> odometry{odometry_cost.cwiseProduct(shapes.odometry),
+                                    redundancy.odometry};
+  const Component<Tangent> loops{loops_cost.cwiseProduct(shapes.loops), redundancy.loops};
+  const Tangent odometry_before = log_scales(scale.odometry, shapes.odometry);
+  const Tangent loops_before = log_scales(scale.loops, shapes.loops);
+  const Tangent odometry_now = told_apart<Pose>(odometry).likeliest(odometry_before, same_shapes);
+  const Tangent loops_now = told_apart<Pose>(loops).likeliest(loops_before, same_shapes);
+
+  Lesson<Pose> lesson;
+  std::tie(lesson.scale.odometry, lesson.shapes.odometry) = scale_and_shape(odometry_now);
+  std::tie(lesson.scale.loops, lesson.shapes.loops) = scale_and_shape(loops_now);
+  lesson.gain = odometry.evidence(odometry_now) - odometry.evidence(odometry_before) +
+                log_scale_peak(loops_now, redundancy.loops) -
+                log_scale_peak(loops_before, redundancy.loops) -
+                0.5 * redundancy.loops.dot(loops_now - loops_before) -
+                log_likelihood(expected_mixture(scale.loops, explanation.shares), residuals);
+  const Tangent change = lesson.shapes.loops.cwiseQuotient(shapes.loops);
+  for (auto& residual : residuals) residual.parts = residual.parts.cwiseQuotient(change);
+  lesson.shares = likeliest_shares(residuals, lesson.scale.loops);
+  lesson.gain += log_likelihood(expected_mixture(lesson.scale.loops, lesson.shares), residuals);
+  return lesson;
+}
+
+template Lesson<Pose2> learn(const Assessment<Pose2>&, const Explanation<Pose2>&, bool);
+template Lesson<Pose3> learn(const Assessment<Pose3>&, const Explanation<Pose3>&, bool);
+
+}  // namespace isotherm::slam::detail

@@ -1,0 +1,144 @@
+#include "prune/consensus/judge.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "graph/candidate_verdicts.hpp"
+#include "isotherm/base/error.hpp"
+#include "prune/consensus/climb/climb.hpp"
+#include "prune/consensus/objective/log_odds.hpp"
+#include "prune/consensus/objective/log_sum.hpp"
+
+namespace isotherm::slam {
+namespace {
+
+using detail::Explanation;
+using detail::log_sum;
+using spectral::Verdict;
+
+// Factors on the stated covariances of odometry and of loops to start from. What is true agrees
+// best: a climb that starts from sharper loops than stated is not drawn to false ones first.
+const std::array<detail::CovarianceScale, 4> kStarts = {
+    {{1.0, 1.0}, {100.0, 1.0}, {1.0, 0.01}, {0.01, 0.01}}};
+constexpr double kNegligible = -20.0;  // log weight of an explanation
+
+// Fewer loops say too little of how accurate odometry is for one of them to be pruned.
+constexpr std::size_t kFewLoops = 5;
+
+// Nothing accepted, and what the climbs found; the best first. Scales at which the normal equations
+// break down explain nothing.
+template <class Pose>
+std::vector<Explanation<Pose>> explanations(detail::Climb<Pose>& climb, bool calibrate) {
+  std::vector<Explanation<Pose>> found = {climb.nothing()};
+  for (const auto& start : kStarts) {
+    try {
+      found.push_back(climb.from(start));
+    } catch (const NumericalError&) {
+      continue;
+    }
+    if (!calibrate) break;
+  }
+  std::ranges::stable_sort(found, std::greater{}, &Explanation<Pose>::evidence);
+  return found;
+}
+
+// Each loop's log odds by all explanations, by their evidence. One at about the scale of a better
+// one that keeps the same loops is the same peak. `best` is set to what the first says.
+template <class Pose>
+std::vector<double> mean_log_odds(detail::Climb<Pose>& climb,
+                                  const std::vector<Explanation<Pose>>& found,
+                                  std::vector<detail::Standing>& best) {
+  best = climb.standings(found.front());
+  std::vector<double> log_true;
+  std::vector<double> log_false;
+  for (const auto& standing : best) {
+    log_true.push_back(-log_sum(0.0, -standing.log_odds));
+    log_false.push_back(-log_sum(0.0, standing.log_odds));
+  }
+  for (auto at = found.begin() + 1; at != found.end(); ++at) {
+    const double log_weight = at->evidence - found.front().evidence;
+    const bool same = std::any_of(found.begin(), at, [&](const auto& better) {
+      return better.accepted == at->accepted &&
+             std::abs(std::log(better.scale.odometry / at->scale.odometry)) < 1.0;
+    });
+    if (same || log_weight < kNegligible) continue;
+    const auto standings = climb.standings(*at);
+    for (std::size_t k = 0; k < standings.size(); ++k) {
+      const double log_odds = standings[k].log_odds;
+      log_true[k] = log_sum(log_true[k], log_weight - log_sum(0.0, -log_odds));
+      log_false[k] = log_sum(log_false[k], log_weight - log_sum(0.0, log_odds));
+    }
+  }
+  for (std::size_t k = 0; k < log_true.size(); ++k) log_true[k] -= log_false[k];
+  return log_true;
+}
+
+Verdict verdict_of(bool accepted, double log_odds, double decisive, bool few) {
+  if (accepted && log_odds > decisive) return Verdict::keep;
+  return log_odds < -decisive && !few ? Verdict::prune : Verdict::ambiguous;
+}
+
+std::string stage_of(bool accepted, const detail::Standing& standing) {
+  if (accepted) return "accepted";
+  return standing.connected ? "rejected" : "unconnected";
+}
+
+template <class Pose>
+void report(detail::Climb<Pose>& climb, const std::vector<Explanation<Pose>>& found,
+            double significance, ConsensusResult& result) {
+  const auto& best = found.front();
+  std::vector<detail::Standing> standings;
+  const auto log_odds = mean_log_odds(climb, found, standings);
+  const double decisive = detail::log_odds_of(1.0 - significance);
+  const bool few = standings.size() < kFewLoops;
+  for (std::size_t k = 0; k < standings.size(); ++k) {
+    auto& verdict = result.verdicts[k];
+    verdict.score = -log_odds[k];
+    verdict.threshold = decisive;
+    verdict.verdict = verdict_of(best.accepted[k], log_odds[k], decisive, few);
+    verdict.stage = stage_of(best.accepted[k], standings[k]);
+    result.details.push_back({.probability = 1.0 / (1.0 + std::exp(-log_odds[k])),
+                              .evidence = standings[k].evidence,
+                              .chi2 = standings[k].chi2,
+                              .connected = standings[k].connected});
+  }
+  result.odometry_scale = best.scale.odometry;
+  result.loop_scale = best.scale.loops;
+  for (int d = 0; d < Pose::kDof; ++d) {
+    result.odometry_scales.push_back(best.scale.odometry * best.shapes.odometry[d]);
+    result.loop_scales.push_back(best.scale.loops * best.shapes.loops[d]);
+  }
+  result.rotation_scale = detail::rotation_against_translation<Pose>(best.shapes.loops);
+  result.share_as_stated =
+      std::exp(detail::expected_mixture(best.scale.loops, best.shares).log_share.back());
+  result.log_evidence = best.evidence;
+}
+
+}  // namespace
+
+template <class Pose>
+ConsensusResult detail::judge_by_evidence(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                                          const ConsensusOptions& options, const RunContext& run) {
+  ConsensusResult result;
+  result.verdicts = candidate_verdicts(graph, roles);
+  if (roles.candidates.empty()) return result;
+  const detail::Objective<Pose> objective(graph, roles, options.window, options.calibrate);
+  detail::Climb<Pose> climb(objective, options, run.progress);
+  const auto found = explanations(climb, options.calibrate);
+  result.moves = climb.moves();
+  result.settled = climb.settled();
+  report(climb, found, options.significance, result);
+  return result;
+}
+
+template ConsensusResult detail::judge_by_evidence(const PoseGraph<Pose2>&, const EdgeRoles&,
+                                                   const ConsensusOptions&, const RunContext&);
+template ConsensusResult detail::judge_by_evidence(const PoseGraph<Pose3>&, const EdgeRoles&,
+                                                   const ConsensusOptions&, const RunContext&);
+
+}  // namespace isotherm::slam

@@ -1,0 +1,105 @@
+#include "prune/consensus/objective/objective.hpp"
+
+#include <cmath>
+#include <tuple>
+
+#include <Eigen/Cholesky>
+
+#include "prune/consensus/estimate/log_normal.hpp"
+#include "prune/consensus/estimate/map_volume.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+// log of the probability that exactly `kept` given ones of `all` loops are true.
+double log_beta_binomial(double kept, double all) {
+  return std::lgamma(kept + 1.0) + std::lgamma(all - kept + 1.0) - std::lgamma(all + 2.0);
+}
+
+}  // namespace
+
+template <class Pose>
+Objective<Pose>::Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles, Index window,
+                           bool calibrate)
+    : graph_(graph),
+      roles_(roles),
+      stated_(scaled({})),
+      near_(stated_.reduced),
+      runs_(stated_.reduced, window),
+      calibrate_(calibrate) {
+  const MapVolume<Pose> map(stated_.reduced.poses);
+  log_volume_ = 0.5 * (map.variance().array().log().sum() + Pose::kDof * kLog2Pi);
+  for (const auto& loop : stated_.reduced.loops) {
+    log_sigma_.push_back(log_determinant(Eigen::LLT<typename Pose::Matrix>(loop.covariance)));
+  }
+}
+
+template <class Pose>
+double Objective<Pose>::log_alternative(Index loop, const NearByClass& near, double loop_scale,
+                                        const typename Pose::Tangent& shape) const {
+  if (!runs_.copied(loop)) {
+    return near[proposal_class(stated_.reduced, loop)] +
+           near_.log_false_density(loop, loop_scale * shape);
+  }
+  const double log_sigma = log_sigma_[loop] + Pose::kDof * std::log(loop_scale);
+  return -0.5 * (log_sigma + Pose::kDof * kLog2Pi) - Pose::kDof;
+}
+
+// Log densities of the accepted loops at the peak, and of their scales.
+template <class Pose>
+double Objective<Pose>::loops_fit(const Explanation<Pose>& explanation,
+                                  const ScaledGraph<Pose>& graph,
+                                  const Estimate<Pose>& estimate) const {
+  const double scale = explanation.scale.loops;
+  double fit = explanation.scale_evidence + explanation.found.log_evidence();
+  for (std::size_t k = 0; k < explanation.accepted.size(); ++k) {
+    if (!explanation.accepted[k]) continue;
+    const auto& link = graph.reduced.loops[k];
+    const typename Pose::Tangent r = estimate.residual(link);
+    const double chi2 = explanation.weights[k] * r.dot(link.information * r) / scale;
+    fit -= 0.5 * (chi2 + log_sigma_[k] + Pose::kDof * (kLog2Pi + std::log(scale)));
+  }
+  return fit;
+}
+
+template <class Pose>
+double Objective<Pose>::evidence(const Explanation<Pose>& explanation,
+                                 const ScaledGraph<Pose>& graph, const Estimate<Pose>& estimate,
+                                 const NearByClass& near) const {
+  const CovarianceScale& scale = explanation.scale;
+  double alternatives = 0.0;
+  double kept = 0.0;
+  for (std::size_t k = 0; k < explanation.accepted.size(); ++k) {
+    if (!explanation.accepted[k]) continue;
+    alternatives +=
+        log_alternative(static_cast<Index>(k), near, scale.loops, explanation.shapes.loops);
+    kept += 1.0;
+  }
+  const double odometry_determinant =
+      graph.log_determinant - Pose::kDof * graph.variables * std::log(scale.odometry);
+  const auto joined = static_cast<double>(estimate.variable_count() - graph.variables);
+  return loops_fit(explanation, graph, estimate) -
+         0.5 * estimate.odometry_cost().sum() / scale.odometry -
+         0.5 * (estimate.log_determinant() - odometry_determinant) +
+         joined * (0.5 * Pose::kDof * kLog2Pi - log_volume_) - alternatives +
+         log_beta_binomial(kept, static_cast<double>(explanation.accepted.size())) +
+         log_scale_peak(explanation);
+}
+
+// log of the prior at the scales times the width of the peak there.
+template <class Pose>
+double Objective<Pose>::log_scale_peak(const Explanation<Pose>& explanation) const {
+  if (!calibrate_) return 0.0;
+  const auto peak = [](double scale, const auto& shape, const auto& redundancy) {
+    return detail::log_scale_peak(log_scales(scale, shape), redundancy);
+  };
+  const auto& [scale, shapes, redundancy] =
+      std::tie(explanation.scale, explanation.shapes, explanation.redundancy);
+  return peak(scale.odometry, shapes.odometry, redundancy.odometry) +
+         peak(scale.loops, shapes.loops, redundancy.loops);
+}
+
+template class Objective<Pose2>;
+template class Objective<Pose3>;
+
+}  // namespace isotherm::slam::detail

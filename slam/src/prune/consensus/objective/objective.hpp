@@ -1,0 +1,110 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "prune/consensus/estimate/estimate.hpp"
+#include "prune/consensus/objective/error_scales.hpp"
+#include "prune/consensus/objective/near_density.hpp"
+#include "prune/consensus/objective/runs.hpp"
+#include "prune/consensus/objective/scale_prior.hpp"
+#include "prune/consensus/objective/scaled_graph.hpp"
+
+namespace isotherm::slam::detail {
+
+/// How many of the numbers measured are left to tell how accurate they are.
+template <class Pose>
+struct Redundancy {
+  typename Pose::Tangent odometry = Pose::Tangent::Zero();  ///< by coordinate
+  typename Pose::Tangent loops = Pose::Tangent::Zero();     ///< of those accepted
+};
+
+/// What explains the measurements: which loops are true, and how accurate everything is.
+/// A plain value; a trial is a copy.
+template <class Pose>
+struct Explanation {
+  std::vector<bool> accepted;  ///< one a loop
+  CovarianceScale scale;       ///< factors on the stated covariances; of loops, that of most
+  Shapes<Pose> shapes;
+  ScaleShares shares;           ///< of loops as accurate as most and as stated, as believed
+  ScaleShares found;            ///< the same, as found among the accepted ones
+  std::vector<double> weights;  ///< of the loops' information, by their scales; one a loop
+  double scale_evidence = 0.0;  ///< ErrorScale::evidence, summed over the accepted ones
+  Redundancy<Pose> redundancy;  ///< of odometry and of the accepted loops
+  typename Estimate<Pose>::Layout layout;
+  double evidence = 0.0;  ///< Objective::evidence()
+};
+
+/// The log evidence of an explanation: of the accepted set A and the scales,
+///
+///     log p(z_A | odometry, scales) - sum over A of log (f k_mean / k)
+///         + log pi(A) + log pi(scales)
+///
+/// with p by Laplace's approximation from the factor that the estimate holds, f and k as in
+/// NearDensity, pi(A) the Beta-binomial of a fraction of which nothing is known. The scales are
+/// log-normal around what the file states (scale_prior.hpp) and integrated over by Laplace's
+/// approximation. Which loops are as accurate as most
+/// and which as stated (ScaleShares) is integrated out by variational Bayes (Bishop, Pattern
+/// Recognition and Machine Learning, 10.1), which gives a lower bound. A part that A joins to
+/// another lies anywhere on the map.
+///
+/// The same number is what accepting the loops one by one adds (loop_gain), in any order.
+template <class Pose>
+class Objective {
+ public:
+  using NearByClass = std::array<double, kProposalClasses>;
+
+  /// `graph` and `roles` must outlive this object. Loops whose ends lie within `window` vertices of
+  /// another's can be in one run. Without `calibrate` the scales are known.
+  Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles, Index window,
+            bool calibrate = true);
+
+  /// As stated.
+  const ScaledGraph<Pose>& stated() const noexcept { return stated_; }
+  ScaledGraph<Pose> scaled(const Shapes<Pose>& shapes) const {
+    return scaled_graph(graph_, roles_, shapes);
+  }
+  const Runs<Pose>& runs() const noexcept { return runs_; }
+
+  /// log k_mean of each class of loops on the map with nodes at `poses`.
+  NearByClass near(const std::vector<Pose>& poses) const { return near_.log_mean(poses); }
+
+  /// The density that a loop's is held against: that of loops near by chance; for one that
+  /// copies the measurement of the one before it in its run, that of a copy, so that a group
+  /// of copies counts as one draw.
+  double log_alternative(Index loop, const NearByClass& near, double loop_scale,
+                         const typename Pose::Tangent& shape) const;
+
+  /// Of the logs of the factors on covariances that measurements of this redundancy tell.
+  CovarianceScale scale_deviation(const Redundancy<Pose>& redundancy) const {
+    if (!calibrate_) return {0.0, 0.0};
+    return {detail::scale_deviation(redundancy.odometry.sum()),
+            detail::scale_deviation(redundancy.loops.sum())};
+  }
+
+  /// log of the volume of relative poses that the map of odometry allows.
+  double log_volume() const noexcept { return log_volume_; }
+
+  /// `estimate` must have settled on the explanation's loops, scales and weights, on `graph`.
+  double evidence(const Explanation<Pose>& explanation, const ScaledGraph<Pose>& graph,
+                  const Estimate<Pose>& estimate, const NearByClass& near) const;
+
+ private:
+  double log_scale_peak(const Explanation<Pose>& explanation) const;
+  double loops_fit(const Explanation<Pose>& explanation, const ScaledGraph<Pose>& graph,
+                   const Estimate<Pose>& estimate) const;
+
+  const PoseGraph<Pose>& graph_;
+  const EdgeRoles& roles_;
+  ScaledGraph<Pose> stated_;
+  NearDensity<Pose> near_;
+  Runs<Pose> runs_;
+  bool calibrate_;
+  double log_volume_;
+  std::vector<double> log_sigma_;  // log|Sigma| of each loop
+};
+
+extern template class Objective<Pose2>;
+extern template class Objective<Pose3>;
+
+}  // namespace isotherm::slam::detail

@@ -1,0 +1,132 @@
+#include "prune/consensus/objective/error_scales.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <Eigen/Dense>
+
+#include "isotherm/base/random.hpp"
+#include "prune/consensus/estimate/log_normal.hpp"
+#include "prune/consensus/objective/loop_gain.hpp"
+#include "slam/loop_graph.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+TEST(ScaleShares, AreAsLikelyAsAnyOrderOfTheLoopsSays) {
+  // Of each kind 3 and 2: 3! 2! / 6!, one order of 5 by a uniform share.
+  EXPECT_NEAR((ScaleShares{{3.0, 2.0}}).log_evidence(), std::log(6.0 * 2.0 / 720.0), 1e-12);
+  EXPECT_NEAR(ScaleShares{}.log_evidence(), 0.0, 1e-12);
+}
+
+TEST(ScaleMixture, ExpectsWhatWasFoundAndOneOfEachKind) {
+  const auto mixture = expected_mixture(0.25, {{6.0, 2.0}});
+  EXPECT_NEAR(mixture.log_share[0], std::log(0.7), 1e-12);
+  EXPECT_NEAR(mixture.log_share[1], std::log(0.3), 1e-12);
+  EXPECT_DOUBLE_EQ(mixture.relative[1] * mixture.scale, 1.0) << "as the file states";
+}
+
+TEST(ErrorScale, BoundsTheLogOfTheMixtureTightly) {
+  constexpr int kDof = 3;
+  const auto mixture = expected_mixture(0.01, {{9.0, 1.0}});
+  for (const double chi2 : {0.0, 3.0, 30.0, 300.0}) {
+    const auto scale = error_scale(mixture, chi2, kDof);
+    double bound = scale.evidence - 0.5 * scale.weight * chi2;
+    double density = 0.0;
+    for (std::size_t j = 0; j < kScaleCount; ++j) {
+      bound += scale.probability[j] * mixture.log_share[j];
+      density += std::exp(mixture.log_share[j] - 0.5 * chi2 / mixture.relative[j]) /
+                 std::pow(mixture.relative[j], 0.5 * kDof);
+    }
+    EXPECT_NEAR(bound, std::log(density), 1e-9) << chi2;
+  }
+}
+
+TEST(ErrorScale, WeighsALoopLessTheFartherOutItIs) {
+  const auto mixture = expected_mixture(0.01, {{9.0, 1.0}});
+  EXPECT_NEAR(error_scale(mixture, 1.0, 3.0).weight, 1.0, 0.01);
+  EXPECT_NEAR(error_scale(mixture, 100.0, 3.0).weight, 0.01, 1e-6);
+}
+
+template <class Pose>
+class LoopGainOf : public testing::Test {};
+using Poses = testing::Types<Pose2, Pose3>;
+TYPED_TEST_SUITE(LoopGainOf, Poses);
+
+// By the densities of the mixture, one after the other.
+TYPED_TEST(LoopGainOf, IsTheLogDensityOfTheMixture) {
+  using Pose = TypeParam;
+  using Matrix = typename Pose::Matrix;
+  Random random(3);
+  const auto spread = [&random](double size) {
+    Matrix A;
+    for (double& entry : A.reshaped()) entry = size * random.normal();
+    return Matrix(A * A.transpose() + 1e-3 * size * size * Matrix::Identity());
+  };
+  for (int k = 0; k < 20; ++k) {
+    typename Pose::Tangent r;
+    for (double& entry : r) entry = 0.1 * random.normal();
+    const Matrix C = spread(0.05);
+    const Matrix Sigma = spread(0.1);
+    const auto mixture = expected_mixture(0.04, {{5.0, 1.0}});
+    const Matrix J = residual_jacobian<Pose>(r);
+    double density = 0.0;
+    for (std::size_t j = 0; j < kScaleCount; ++j) {
+      const Matrix S = J * C * J.transpose() + mixture.scale * mixture.relative[j] * Sigma;
+      density += std::exp(mixture.log_share[j] + log_normal<Pose>(r, S));
+    }
+    const auto gain = loop_gain<Pose>(predict<Pose>(r, C, Sigma), mixture);
+    EXPECT_NEAR(gain.log_density, std::log(density), 1e-8);
+  }
+}
+
+// Against the same integral over fine steps of both logs, far out.
+TYPED_TEST(LoopGainOf, IntegratesOverScalesThatAreNotKnown) {
+  using Pose = TypeParam;
+  using Matrix = typename Pose::Matrix;
+  const typename Pose::Tangent r = Pose::Tangent::Constant(0.4);
+  const Matrix C = 0.01 * Matrix::Identity();
+  const Matrix Sigma = 0.02 * Matrix::Identity();
+  const auto mixture = expected_mixture(0.5, {{3.0, 1.0}});
+  const auto prediction = predict<Pose>(r, C, Sigma);
+  const CovarianceScale deviation = {1.2, 0.8};
+  constexpr double kStep = 0.1;
+  double sum = 0.0;
+  double all = 0.0;
+  for (double x = -6.0; x < 6.0; x += kStep) {
+    for (double y = -6.0; y < 6.0; y += kStep) {
+      const double weight = std::exp(-0.5 * (x * x + y * y));
+      all += weight;
+      const Matrix J = residual_jacobian<Pose>(r);
+      const Matrix known = std::exp(deviation.odometry * x) * J * C * J.transpose();
+      for (std::size_t j = 0; j < kScaleCount; ++j) {
+        const double own = j == 0 ? 0.5 * std::exp(deviation.loops * y) : 1.0;
+        const Matrix S = known + own * Sigma;
+        sum += weight * std::exp(mixture.log_share[j] + log_normal<Pose>(r, S));
+      }
+    }
+  }
+  EXPECT_NEAR(loop_gain<Pose>(prediction, mixture, deviation).log_density, std::log(sum / all),
+              0.05);
+}
+
+// By matrices: the information of the loop is taken away from that of all.
+TYPED_TEST(LoopGainOf, TakesTheLoopOutOfWhatAllSay) {
+  using Pose = TypeParam;
+  using Matrix = typename Pose::Matrix;
+  const typename Pose::Tangent r = Pose::Tangent::Constant(0.01);
+  const Matrix Sigma = 0.5 * Matrix::Identity() + 0.1 * Matrix::Ones();
+  const Matrix others = 0.3 * Matrix::Identity() + 0.2 * Matrix::Ones();
+  constexpr double kPrecision = 2.5;
+  const Matrix J_inverse = residual_jacobian<Pose>(r).inverse();
+  const Matrix all = (others.inverse() + kPrecision * Sigma.inverse()).inverse();
+  const auto prediction =
+      predict_without<Pose>(r, J_inverse * all * J_inverse.transpose(), Sigma, kPrecision);
+  const auto gain = loop_gain<Pose>(prediction, expected_mixture(1.0, {}));
+  // The residual is fitted by all of them: without the loop it is (1 - gain)^-1 as long.
+  const typename Pose::Tangent out = others * all.inverse() * r;
+  EXPECT_NEAR(gain.log_density, log_normal<Pose>(out, Sigma + others), 1e-9);
+}
+
+}  // namespace
+}  // namespace isotherm::slam::detail

@@ -1,0 +1,189 @@
+#include "prune/consensus/objective/objective.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <Eigen/Dense>
+
+#include "isotherm/base/random.hpp"
+#include "prune/consensus/climb/climb.hpp"
+#include "prune/consensus/estimate/log_normal.hpp"
+#include "slam/loop_graph.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+using isotherm_test::random_loop_graph;
+
+template <class Pose>
+class ObjectiveOf : public testing::Test {};
+using Poses = testing::Types<Pose2, Pose3>;
+TYPED_TEST_SUITE(ObjectiveOf, Poses);
+
+// log p(z_A | odometry) by dense algebra: the residuals of the loops under odometry are normal,
+// with covariance Sigma + J blockdiag(odometry) J', J by differences.
+template <class Pose>
+double dense_log_likelihood(const ReducedGraph<Pose>& graph, const CovarianceScale& scale) {
+  constexpr int kDof = Pose::kDof;
+  constexpr double kStep = 1e-6;
+  const auto residuals = [&](const std::vector<Pose>& steps) {
+    std::vector<Pose> poses = {Pose()};
+    for (const Pose& step : steps) poses.push_back(poses.back() * step);
+    Eigen::VectorXd r(static_cast<Eigen::Index>(graph.loops.size()) * kDof);
+    for (std::size_t k = 0; k < graph.loops.size(); ++k) {
+      const auto& loop = graph.loops[k];
+      r.template segment<kDof>(static_cast<Eigen::Index>(k) * kDof) =
+          (loop.T_a_b.inverse() * (poses[loop.a].inverse() * poses[loop.b])).log();
+    }
+    return r;
+  };
+  std::vector<Pose> steps;
+  for (const auto& step : graph.steps) steps.push_back(step.T_a_b);
+  const Eigen::VectorXd r = residuals(steps);
+  Eigen::MatrixXd S = Eigen::MatrixXd::Zero(r.size(), r.size());
+  for (std::size_t s = 0; s < steps.size(); ++s) {
+    Eigen::MatrixXd J(r.size(), kDof);
+    for (int d = 0; d < kDof; ++d) {
+      const auto moved = [&](double by) {
+        auto bent = steps;
+        typename Pose::Tangent xi = Pose::Tangent::Zero();
+        xi[d] = by;
+        bent[s] = bent[s] * Pose::exp(xi);
+        return residuals(bent);
+      };
+      J.col(d) = (moved(kStep) - moved(-kStep)) / (2.0 * kStep);
+    }
+    S += scale.odometry * J * graph.steps[s].covariance * J.transpose();
+  }
+  for (std::size_t k = 0; k < graph.loops.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(k) * kDof;
+    S.template block<kDof, kDof>(at, at) += scale.loops * graph.loops[k].covariance;
+  }
+  const Eigen::LLT<Eigen::MatrixXd> factor(S);
+  const double log_det = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+  return -0.5 * (r.dot(factor.solve(r)) + log_det +
+                 static_cast<double>(r.size()) * std::log(2.0 * std::numbers::pi));
+}
+
+template <class Pose>
+double evidence_of(const Objective<Pose>& objective, Estimate<Pose>& estimate,
+                   Explanation<Pose>& explanation) {
+  estimate.weigh_loops(explanation.weights);
+  estimate.update(explanation.accepted, explanation.scale, 10);
+  return objective.evidence(explanation, objective.stated(), estimate,
+                            objective.near(estimate.poses()));
+}
+
+TYPED_TEST(ObjectiveOf, IsTheMarginalLikelihoodOfTheLoops) {
+  using Pose = TypeParam;
+  Random random(7);
+  const auto made = random_loop_graph<Pose>(random, 15, 6, 1.0, 1e6);
+  const auto roles = edge_roles(made.graph);
+  const Objective<Pose> objective(made.graph, roles, 20);
+  const auto& reduced = objective.stated().reduced;
+  const std::size_t loops = reduced.loops.size();
+  for (const CovarianceScale scale : {CovarianceScale{1.0, 1.0}, CovarianceScale{3.0, 0.2}}) {
+    Estimate<Pose> estimate(reduced);
+    Explanation<Pose> none{.accepted = std::vector<bool>(loops, false), .scale = scale};
+    none.weights.assign(loops, 1.0);
+    Explanation<Pose> all = none;
+    all.accepted.assign(loops, true);
+    const double without = evidence_of(objective, estimate, none);
+    const double with = evidence_of(objective, estimate, all);
+    const auto near = objective.near(estimate.poses());
+    double alternatives = 0.0;
+    for (std::size_t k = 0; k < loops; ++k) {
+      alternatives += objective.log_alternative(static_cast<Index>(k), near, scale.loops,
+                                                Pose::Tangent::Ones());
+    }
+    // No loop and every loop are equally likely by the Beta-binomial.
+    EXPECT_NEAR(with - without + alternatives, dense_log_likelihood(reduced, scale), 0.05);
+  }
+}
+
+TYPED_TEST(ObjectiveOf, RisesByWhatALoopGains) {
+  using Pose = TypeParam;
+  Random random(8);
+  const auto made = random_loop_graph<Pose>(random, 15, 6, 1.0, 1e6);
+  const auto roles = edge_roles(made.graph);
+  const Objective<Pose> objective(made.graph, roles, 20);
+  const auto& reduced = objective.stated().reduced;
+  const std::size_t loops = reduced.loops.size();
+  Explanation<Pose> all{.accepted = std::vector<bool>(loops, true)};
+  all.weights.assign(loops, 1.0);
+  Explanation<Pose> but_first = all;
+  but_first.accepted[0] = false;
+  Estimate<Pose> estimate(reduced);
+  const auto& link = reduced.loops[0];
+  const std::vector<Index> first = {0};
+
+  const double without = evidence_of(objective, estimate, but_first);
+  const auto predicted = predict<Pose>(estimate.residual(link),
+                                       estimate.relative_covariances(first)[0], link.covariance);
+  const double with = evidence_of(objective, estimate, all);
+  const auto held_out = predict_without<Pose>(
+      estimate.residual(link), estimate.relative_covariances(first)[0], link.covariance, 1.0);
+  const ScaleMixture as_stated = expected_mixture(1.0, {});
+  const double gain = loop_gain<Pose>(predicted, as_stated).log_density;
+  EXPECT_NEAR(loop_gain<Pose>(held_out, as_stated).log_density, gain, 0.05);
+
+  const auto near = objective.near(estimate.poses());
+  // All of n against a given n - 1 of n by the Beta-binomial: n to 1.
+  const double prior = std::log(static_cast<double>(loops));
+  EXPECT_NEAR(with - without,
+              gain - objective.log_alternative(0, near, 1.0, Pose::Tangent::Ones()) + prior, 0.3)
+      << "chance on the map with the loop, and on the one without";
+}
+
+// Each coordinate's variances by its factor, of odometry and of loops, and determinants stay. That
+// of a chain's normal equations is the product of its steps', whose Jacobians have unit
+// determinant.
+TYPED_TEST(ObjectiveOf, ScalesEachCoordinate) {
+  using Pose = TypeParam;
+  Random random(10);
+  const auto made = random_loop_graph<Pose>(random, 30, 10, 1.0);
+  const auto roles = edge_roles(made.graph);
+  Shapes<Pose> shapes;
+  shapes.odometry[0] = 5.0;
+  shapes.odometry[1] = 0.2;
+  shapes.loops[Pose::kDof - 1] = 7.0;
+  shapes.loops[0] = 1.0 / 7.0;
+  const auto stated = scaled_graph(made.graph, roles, Shapes<Pose>());
+  const auto scaled = scaled_graph(made.graph, roles, shapes);
+  double steps = 0.0;
+  for (const auto& step : scaled.reduced.steps) steps += std::log(step.information.determinant());
+  EXPECT_NEAR(scaled.log_determinant, steps, 1e-6 * std::abs(steps));
+  EXPECT_EQ(scaled.variables, stated.variables);
+  const typename Pose::Tangent root = shapes.loops.cwiseSqrt();
+  for (std::size_t k = 0; k < stated.reduced.loops.size(); ++k) {
+    const typename Pose::Matrix expected =
+        root.asDiagonal() * stated.reduced.loops[k].covariance * root.asDiagonal();
+    EXPECT_LT((scaled.reduced.loops[k].covariance - expected).norm(), 1e-9 * expected.norm());
+  }
+  EXPECT_NEAR(rotation_against_translation<Pose>(shapes.loops),
+              std::pow(7.0, 1.0 / (Pose::kDof - Pose::kDim) + 1.0 / Pose::kDim), 1e-9);
+}
+
+// A loop of a graph that shrinks to a point is near everything.
+TYPED_TEST(ObjectiveOf, FindsPairsNearerOnASmallerMap) {
+  using Pose = TypeParam;
+  Random random(9);
+  const auto made = random_loop_graph<Pose>(random, 200, 30, 1.0);
+  const auto reduced = reduce(made.graph, edge_roles(made.graph));
+  const NearDensity<Pose> near(reduced);
+  std::vector<Pose> scattered = reduced.poses;
+  for (std::size_t v = 0; v < scattered.size(); ++v) {
+    typename Pose::Tangent away = Pose::Tangent::Zero();
+    away[0] = 1000.0 * static_cast<double>(v);
+    scattered[v] = Pose::exp(away) * scattered[v];
+  }
+  const auto as_is = near.log_mean(reduced.poses);
+  const auto far = near.log_mean(scattered);
+  const std::size_t longest = proposal_class(reduced, 0);
+  EXPECT_GT(as_is[longest], far[longest]);
+}
+
+}  // namespace
+}  // namespace isotherm::slam::detail
