@@ -46,7 +46,7 @@ Graph kept(const JudgedEdges& self, bool keep_ambiguous) {
 }
 
 std::string page(const JudgedEdges& self) {
-  return page_of(graph_of(self), self.options, self.result);
+  return page_of(nb::find(self), graph_of(self), self.options, self.result);
 }
 
 JudgedEdges judge(nb::handle_t<Graph> graph, nb::kwargs given) {
@@ -58,9 +58,10 @@ JudgedEdges judge(nb::handle_t<Graph> graph, nb::kwargs given) {
   const RunKeywords run = keywords.take_run();
   keywords.finish();
   const Graph& input = graph_of(judged);
-  judged.result = without_gil(run, [&](const RunContext& context) {
-    return judge_edges(input.graph, judged.options, input.points, context);
-  });
+  judged.result =
+      without_gil(run, judged.graph, [&input, options = judged.options](const RunContext& context) {
+        return judge_edges(input.graph, options, input.points, context);
+      });
   return judged;
 }
 

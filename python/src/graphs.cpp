@@ -318,7 +318,7 @@ void bind_graphs(nb::module_& module) {
         Keywords keywords("automatic_scales", std::move(given));
         const RunKeywords run = keywords.take_run();
         keywords.finish();
-        return give(without_gil(run, [&](const RunContext& context) {
+        return give(without_gil(run, nb::find(graph), [&graph](const RunContext& context) {
           return spectral::automatic_scales(graph.graph, context);
         }));
       },

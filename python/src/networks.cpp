@@ -164,12 +164,12 @@ Localized locate(nb::handle_t<Network> network, nb::kwargs given) {
   const RunKeywords run = keywords.take_run();
   keywords.finish();
   const auto& of = nb::cast<const Network&>(network);
-  auto result = without_gil(run, [&](const RunContext& context) {
-    auto own = options;
-    own.threads = context.threads;
-    own.progress = context.progress;
-    return localize(of, own);
-  });
+  auto result = without_gil(run, nb::borrow(network),
+                            [&of, own = options](const RunContext& context) mutable {
+                              own.threads = context.threads;
+                              own.progress = context.progress;
+                              return localize(of, own);
+                            });
   return {std::move(result), nb::borrow(network), options};
 }
 
@@ -211,7 +211,7 @@ nb::object node_frame(nb::handle_t<Localized> self) {
 
 std::string page(const Localized& self, nb::handle truth) {
   const auto& network = network_of(self);
-  return page_of(network, network.report.path, self.options, self, truth);
+  return page_of(nb::find(self), network, network.report.path, self.options, self, truth);
 }
 
 std::string notebook_page(const Localized& self) {
@@ -225,7 +225,8 @@ nb::tuple simulate(nb::kwargs given) {
   keywords.take_fields(options);
   keywords.take_into("seed", options.seed);
   keywords.finish();
-  auto made = without_gil({}, [&](const RunContext&) { return simulate_network(options); });
+  auto made = without_gil({}, nb::none(),
+                          [options](const RunContext&) { return simulate_network(options); });
   std::vector<std::int8_t> origins;
   for (const auto origin : made.origins) origins.push_back(static_cast<std::int8_t>(origin));
   const Eigen::MatrixXd truth = made.truth.transpose();

@@ -31,8 +31,8 @@ Coordinates embed_graph(const Graph& graph, nb::kwargs given) {
   keywords.take_fields(options);
   const RunKeywords run = keywords.take_run();
   keywords.finish();
-  return {without_gil(run,
-                      [&](const RunContext& context) {
+  return {without_gil(run, nb::find(graph),
+                      [&graph, options](const RunContext& context) {
                         return embed(graph.graph, options, context.progress);
                       }),
           graph.ids};
@@ -58,10 +58,11 @@ EigenDecomposition eigenpairs(const Graph& graph, const std::string& kind, nb::k
   const RunKeywords run = keywords.take_run();
   keywords.finish();
   const auto of = enum_value<LaplacianKind>("kind", kind);
-  return without_gil(run, [&](const RunContext& context) {
-    options.progress = context.progress;
-    return smallest_eigenpairs(Laplacian(graph.graph, of), options);
-  });
+  return without_gil(run, nb::find(graph),
+                     [&graph, of, options](const RunContext& context) mutable {
+                       options.progress = context.progress;
+                       return smallest_eigenpairs(Laplacian(graph.graph, of), options);
+                     });
 }
 
 HeatDistanceResult heat(const Graph& graph, nb::handle pairs, nb::handle scales, nb::kwargs given) {
@@ -70,13 +71,14 @@ HeatDistanceResult heat(const Graph& graph, nb::handle pairs, nb::handle scales,
   keywords.take_fields(options);
   const RunKeywords run = keywords.take_run();
   keywords.finish();
-  const auto of = pairs_from(pairs, "pairs");
-  const auto times = number_list<double>(scales, "scales");
-  return without_gil(run, [&](const RunContext& context) {
-    options.threads = context.threads;
-    options.progress = context.progress;
-    return heat_distances(graph.graph, of, times, options);
-  });
+  return without_gil(
+      run, nb::find(graph),
+      [&graph, options, of = pairs_from(pairs, "pairs"),
+       times = number_list<double>(scales, "scales")](const RunContext& context) mutable {
+        options.threads = context.threads;
+        options.progress = context.progress;
+        return heat_distances(graph.graph, of, times, options);
+      });
 }
 
 View2<double> heat_view(const HeatDistanceResult& self, double CertifiedValue::*member) {
@@ -92,10 +94,14 @@ ResistanceResult resistances(const Graph& graph, nb::handle pairs, nb::kwargs gi
   Keywords keywords("effective_resistances", std::move(given));
   const RunKeywords run = keywords.take_run();
   keywords.finish();
-  const auto of = pairs.is_none() ? std::vector<VertexPair>() : pairs_from(pairs, "pairs");
-  return without_gil(run, [&](const RunContext&) {
-    return pairs.is_none() ? edge_resistances(graph.graph) : effective_resistances(graph.graph, of);
-  });
+  if (pairs.is_none()) {
+    return without_gil(run, nb::find(graph),
+                       [&graph](const RunContext&) { return edge_resistances(graph.graph); });
+  }
+  return without_gil(run, nb::find(graph),
+                     [&graph, of = pairs_from(pairs, "pairs")](const RunContext&) {
+                       return effective_resistances(graph.graph, of);
+                     });
 }
 
 void bind_eigenpairs(nb::module_& module) {

@@ -65,11 +65,12 @@ Pruned prune_graph(nb::handle_t<PoseGraphFile> graph, const std::string& method,
   require_own(keywords, pruned.options);
   const auto& input = graph_of(pruned).graph;
   pruned.roles = roles_of(input, trusted);
-  pruned.result = without_gil(run, [&](const RunContext& context) {
-    return std::visit(
-        [&](const auto& own) { return slam::prune(own, pruned.roles, pruned.options, context); },
-        input);
-  });
+  pruned.result = without_gil(
+      run, pruned.graph,
+      [&input, roles = pruned.roles, options = pruned.options](const RunContext& context) {
+        return std::visit(
+            [&](const auto& own) { return slam::prune(own, roles, options, context); }, input);
+      });
   return pruned;
 }
 
