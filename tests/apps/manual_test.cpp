@@ -1,8 +1,6 @@
-// Shell completion and manual pages, which the command makes of its own parser.
+// Manual pages, which the command makes of its own parser.
 #include <cstdlib>
 #include <regex>
-#include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -14,8 +12,6 @@
 namespace {
 
 using isotherm_test::read_text;
-using testing::Contains;
-using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -28,59 +24,7 @@ bool is_installed(const std::string& program) {
   return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
 }
 
-class Manual : public isotherm_test::CommandTest {
- protected:
-  /// What bash offers after these words, the last of which is being typed.
-  std::vector<std::string> offered(const std::vector<std::string>& words) const {
-    isotherm_test::write_text(file("script.bash"), run_ok("completion bash"));
-    std::string line = "source script.bash; COMP_WORDS=(isotherm";
-    for (const auto& word : words) line += " '" + word + "'";
-    line += "); COMP_CWORD=" + std::to_string(words.size());
-    line += R"(; _isotherm; printf '%s\n' "${COMPREPLY[@]}")";
-    isotherm_test::write_text(file("ask.sh"), line);
-    const auto command = "cd '" + folder.string() + "' && bash ask.sh > offered.txt";
-    EXPECT_EQ(std::system(command.c_str()), 0);
-    std::istringstream text(read_text(file("offered.txt")));
-    std::vector<std::string> all;
-    for (std::string word; std::getline(text, word);) {
-      if (!word.empty()) all.push_back(word);
-    }
-    return all;
-  }
-};
-
-TEST_F(Manual, BashCompletesVerbs) {
-  const auto all = offered({""});
-  for (const auto& verb : kManualVerbs) EXPECT_THAT(all, Contains(verb));
-  EXPECT_THAT(offered({"pru"}), ElementsAre("prune"));
-  EXPECT_THAT(offered({"simulate", "ci"}), ElementsAre("city"));
-}
-
-TEST_F(Manual, BashCompletesFlagsOfTheVerb) {
-  EXPECT_THAT(offered({"prune", "--verd"}), ElementsAre("--verdicts"));
-  EXPECT_THAT(offered({"info", "--verd"}), IsEmpty());
-  EXPECT_THAT(offered({"simulate", "city", "--blo"}), ElementsAre("--block"));
-  EXPECT_THAT(offered({"prune", "--no-calib"}), ElementsAre("--no-calibrate"));
-}
-
-TEST_F(Manual, BashCompletesChoices) {
-  EXPECT_THAT(offered({"prune", "map.g2o", "--method", "conse"}), ElementsAre("consensus"));
-  EXPECT_THAT(offered({"optimize", "--kernel", "gnc"}), ElementsAre("gnc", "gnc-gm"));
-  EXPECT_THAT(offered({"completion", "f"}), ElementsAre("fish"));
-}
-
-TEST_F(Manual, BashLeavesFilesToItself) { EXPECT_THAT(offered({"info", "x"}), IsEmpty()); }
-
-TEST_F(Manual, OtherShellsTakeTheirScripts) {
-  isotherm_test::write_text(file("_isotherm"), run_ok("completion zsh"));
-  isotherm_test::write_text(file("isotherm.fish"), run_ok("completion fish"));
-  EXPECT_THAT(read_text(file("_isotherm")), HasSubstr("#compdef isotherm\n"));
-  for (const std::string shell : {"zsh", "fish"}) {
-    if (!is_installed(shell)) continue;
-    const auto script = file(shell == "zsh" ? "_isotherm" : "isotherm.fish");
-    EXPECT_EQ(std::system((shell + " -n '" + script + "'").c_str()), 0) << shell;
-  }
-}
+using Manual = isotherm_test::CommandTest;
 
 TEST_F(Manual, EachVerbHasAPageWithItsFlags) {
   for (const auto& verb : kManualVerbs) {
@@ -113,10 +57,6 @@ TEST_F(Manual, PagesAreSound) {
   }
 }
 
-TEST_F(Manual, WhatIsNotThereIsTold) {
-  EXPECT_EQ(run("manual nothing").code, 2);
-  EXPECT_EQ(run("completion csh").code, 2);
-  EXPECT_EQ(run("completion").code, 2);
-}
+TEST_F(Manual, WhatIsNotThereIsTold) { EXPECT_EQ(run("manual nothing").code, 2); }
 
 }  // namespace
