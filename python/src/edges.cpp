@@ -83,19 +83,13 @@ void bind_result(nb::class_<JudgedEdges>& bound) {
            "that are ambiguous.")
       .def("report", page, nb::sig("def report(self) -> str"),
            "The page that explains the result, as HTML that needs nothing else.")
-      .def("_repr_html_",
-           [](const JudgedEdges& self) {
-             return framed(graph_of(self).ids.size(), in_words(self.result.verdicts),
-                           [&self] { return page(self); });
-           })
-      .def(
-          "to_dataframe",
-          [](const JudgedEdges& self) {
-            const nb::object verdicts = nb::cast(named_verdicts(self));
-            return data_frame(columns(nb::cast<const Verdicts&>(verdicts), verdicts));
-          },
-          nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
-          "The verdicts, as a table of pandas.");
+      .def("_repr_html_", [](const JudgedEdges& self) {
+        return framed(graph_of(self).ids.size(), in_words(self.result.verdicts),
+                      [&self] { return page(self); });
+      });
+  bind_data_frame(
+      bound, [](const JudgedEdges& self) { return data_frame(named_verdicts(self)); },
+      "The verdicts");
 }
 
 }  // namespace

@@ -283,13 +283,9 @@ void bind_contents(nb::class_<Network>& bound) {
           "Where the nodes are said to be, n x d; NaN where that is not known.")
       .def_prop_ro(
           "anchors", [](const Network& self) { return view(self.landmarks, nb::find(self)); },
-          "Nodes that do not move.")
-      .def_prop_ro(
-          "report", [](const Network& self) { return report_of(self.report); },
-          nb::sig("def report(self) -> dict[str, object]"),
-          "What was noticed in the file that the network was read from.")
-      .def("to_dataframe", range_frame, nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
-           "from, to, range and variance, as a table of pandas.");
+          "Nodes that do not move.");
+  bind_read_report(bound, "the network");
+  bind_data_frame(bound, range_frame, "from, to, range and variance");
 }
 
 void bind_network(nb::module_& module) {
@@ -302,7 +298,8 @@ void bind_network(nb::module_& module) {
 }
 
 void bind_result(nb::module_& module) {
-  nb::class_<Localized>(module, "Localized", "Where the nodes of a network are.")
+  nb::class_<Localized> bound(module, "Localized", "Where the nodes of a network are.");
+  bound
       .def_prop_ro(
           "positions",
           [](const Localized& self) { return rows_of(self.positions, nb::find(self)); },
@@ -338,9 +335,8 @@ void bind_result(nb::module_& module) {
             write_positions(path_of(path), network_of(self), self);
           },
           "path"_a, nb::sig("def write(self, path: str | os.PathLike[str]) -> None"),
-          "Write rows of node, position, status, deviation and covariance, as CSV.")
-      .def("to_dataframe", node_frame, nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
-           "node, position and status, as a table of pandas.");
+          "Write rows of node, position, status, deviation and covariance, as CSV.");
+  bind_data_frame(bound, node_frame, "node, position and status");
 }
 
 Network read(nb::handle path, bool strict, bool file_anchors) {

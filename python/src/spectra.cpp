@@ -132,7 +132,8 @@ void bind_eigenpairs(nb::module_& module) {
 }
 
 void bind_embedding(nb::module_& module) {
-  nb::class_<Coordinates>(module, "Embedding", "Coordinates for the vertices of a graph.")
+  nb::class_<Coordinates> bound(module, "Embedding", "Coordinates for the vertices of a graph.");
+  bound
       .def_prop_ro(
           "coordinates", [](const Coordinates& self) { return view(self.rows, nb::find(self)); },
           "One row a vertex, n x k; fewer columns than asked for where there are no more.")
@@ -142,9 +143,8 @@ void bind_embedding(nb::module_& module) {
       .def_ro("components", &EmbedResult::components, "Connected components of the graph.")
       .def_prop_ro(
           "ids", [](const Coordinates& self) { return view(self.ids, nb::find(self)); },
-          "The number that the input gives to each vertex, n.")
-      .def("to_dataframe", coordinate_frame, nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
-           "vertex, x0, x1 and so on, as a table of pandas.");
+          "The number that the input gives to each vertex, n.");
+  bind_data_frame(bound, coordinate_frame, "vertex, x0, x1 and so on");
 }
 
 void bind_heat_distances(nb::module_& module) {
