@@ -136,7 +136,7 @@ View1<double> weights_of(const Graph& self) {
 }
 
 nb::object edge_frame(nb::handle_t<Graph> self) {
-  nb::dict columns;
+  const nb::dict columns;
   const nb::object ids = self.attr("ids");
   const nb::object ends = ids[self.attr("edges")];
   columns["from"] = ends.attr("T")[0];

@@ -120,7 +120,7 @@ nb::object range_frame(nb::handle_t<Network> self) {
     from.push_back(network.names[range.from]);
     to.push_back(network.names[range.to]);
   }
-  nb::dict columns;
+  const nb::dict columns;
   columns["from"] = from;
   columns["to"] = to;
   columns["range"] = member_view(network.ranges, &RangeMeasurement::distance, self);
@@ -199,7 +199,7 @@ nb::object node_frame(nb::handle_t<Localized> self) {
   const auto& result = nb::cast<const Localized&>(self);
   constexpr const char* kAxes[] = {"x", "y", "z"};
   const auto d = static_cast<std::size_t>(result.positions.rows());
-  nb::dict columns;
+  const nb::dict columns;
   columns["node"] = network_of(result).names;
   for (std::size_t axis = 0; axis < d; ++axis) {
     columns[kAxes[axis]] =

@@ -40,7 +40,7 @@ Coordinates embed_graph(const Graph& graph, nb::kwargs given) {
 
 nb::object coordinate_frame(nb::handle_t<Coordinates> self) {
   const auto& result = nb::cast<const Coordinates&>(self);
-  nb::dict columns;
+  const nb::dict columns;
   columns["vertex"] = view(result.ids, self);
   for (Eigen::Index c = 0; c < result.rows.cols(); ++c) {
     const std::string name = "x" + std::to_string(c);

@@ -143,7 +143,8 @@ void Work::stop() {
 
 // The computation waits for the answer meanwhile, and the question stays as it is.
 bool Work::hear(nb::handle told) const {
-  return !told(question_->stage, question_->done, question_->total).is(nb::bool_(false));
+  const Progress& question = question_.value();
+  return !told(question.stage, question.done, question.total).is(nb::bool_(false));
 }
 
 // Until the end, or until `told` is against going on.

@@ -37,7 +37,7 @@ View2<std::uint64_t> label_ends(const Labels& labels) {
 
 nb::object label_frame(nb::handle_t<Labels> self) {
   const auto& labels = nb::cast<const Labels&>(self);
-  nb::dict columns;
+  const nb::dict columns;
   columns["edge"] = member_view(labels.rows, &EdgeLabel::edge, self);
   columns["from"] = member_view(labels.rows, &EdgeLabel::from, self);
   columns["to"] = member_view(labels.rows, &EdgeLabel::to, self);

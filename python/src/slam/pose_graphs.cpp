@@ -184,7 +184,7 @@ nb::object edge_frame(nb::handle_t<PoseGraphFile> self) {
   const bool space = nb::cast<int>(self.attr("dimension")) == Pose3::kDim;
   constexpr std::array<const char*, 3> kPlane = {"x", "y", "theta"};
   constexpr std::array<const char*, 7> kSpace = {"x", "y", "z", "qx", "qy", "qz", "qw"};
-  nb::dict columns;
+  const nb::dict columns;
   columns["from"] = ends.attr("T")[0];
   columns["to"] = ends.attr("T")[1];
   const std::size_t count = space ? kSpace.size() : kPlane.size();
