@@ -38,13 +38,13 @@ echo "check: layers and rooms"
 cmake -DROOT="$PWD" -P tests/layers/check_layers.cmake
 python3 tests/layers/check_rooms.py .
 
+layers=({base,spectral,geometry,network,slam,apps,python}/'*.cpp')
+
 sources() {
   if [ "$tidy" = all ]; then
-    git ls-files 'base/*.cpp' 'spectral/*.cpp' 'geometry/*.cpp' 'network/*.cpp' 'slam/*.cpp' \
-      'apps/*.cpp'
+    git ls-files "${layers[@]}"
   elif git rev-parse -q --verify "$base" >/dev/null; then
-    git diff --name-only --diff-filter=d "$base" -- 'base/*.cpp' 'spectral/*.cpp' \
-      'geometry/*.cpp' 'network/*.cpp' 'slam/*.cpp' 'apps/*.cpp' | head -n "$most_files"
+    git diff --name-only --diff-filter=d "$base" -- "${layers[@]}" | head -n "$most_files"
   else
     echo "check: no $base here; clang-tidy is left out" >&2
   fi
@@ -54,6 +54,7 @@ if [ "$tidy" = none ]; then exit 0; fi
 mapfile -t files < <(sources)
 if [ "${#files[@]}" -eq 0 ]; then exit 0; fi
 echo "check: clang-tidy on ${#files[@]} files"
-cmake --preset dev >/dev/null
+python=$(scripts/python-env.sh)
+cmake --preset dev -DISOTHERM_BUILD_PYTHON=ON -DPython_EXECUTABLE="$python" >/dev/null
 printf '%s\0' "${files[@]}" | xargs -0 -n1 -P2 clang-tidy-16 -p build/dev --quiet \
   --extra-arg=-Wno-unknown-warning-option 2>/dev/null

@@ -17,8 +17,9 @@ packages=(
   libbenchmark-dev
 )
 
-# What only the tests of the Python package need; the rest comes from PyPI, by python-env.sh.
-test_packages=(python3-dev python3-venv)
+# What only the tests of the Python package (the rest comes from PyPI, by python-env.sh) and of
+# completion need.
+test_packages=(python3-dev python3-venv zsh fish)
 
 # What only the tests of the report viewer need, as `command package`: Node may come
 # from elsewhere than Debian, and then brings npm along.
@@ -35,7 +36,7 @@ usage() {
 usage: scripts/install-deps.sh [--tests] [--checks] [--fuzz] [--list]
 
 Installs the Debian packages Isotherm is built with.
-  --tests  also those that only the tests need: Python's headers, a browser and Node
+  --tests  also those that only the tests need: Python's headers, shells, a browser and Node
   --checks also those that scripts/check.sh calls
   --fuzz   also those that scripts/fuzz.sh builds with
   --list   only print which packages are missing

@@ -24,6 +24,13 @@ def python_page(name, module):
     return f"# isotherm.{name}\n\n::: {module}\n"
 
 
+def in_markdown(line):
+    """A line of a header's documentation, its tags as paragraphs."""
+    text = html.escape(line, quote=False).replace("*", r"\*").replace("[", r"\[")
+    text = re.sub(r"^@throws ", "\n*Throws* ", text)
+    return re.sub(r"^@param (\w+)", r"\n`\1`:", text)
+
+
 def header_page(path):
     """A header as prose, where it has documentation, and code."""
     prose, code, parts = [], [], []
@@ -46,7 +53,7 @@ def header_page(path):
         if top and code:
             flush()
         if top:
-            prose.append(html.escape(comment[1], quote=False).replace("*", r"\*").replace("[", r"\["))
+            prose.append(in_markdown(comment[1]))
         else:
             code.append(line)
     flush()
@@ -59,7 +66,9 @@ def layer_page(layer):
     for path in sorted(base.rglob("*.hpp")):
         name = path.relative_to(base).as_posix()
         if name.count("/") > 1:
-            parts.append(f"## `{name}`\n\n{header_page(path)}")
+            # All begin alike, and the table of contents has room for little.
+            below = name.removeprefix(f"isotherm/{layer}/")
+            parts.append(f"## {below}\n\n`#include <{name}>`\n\n{header_page(path)}")
     return "\n\n".join(parts)
 
 

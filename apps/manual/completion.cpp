@@ -16,6 +16,10 @@ std::string quoted(const std::string& text, const std::string& special = "") {
   return safe + "'";
 }
 
+std::string spaced(const std::vector<std::string>& words) {
+  return fmt::format("{}", fmt::join(words, " "));
+}
+
 // Sets `verb` to the verb that the words before the cursor name, in bash and zsh.
 std::string verb_so_far(const std::vector<VerbWords>& verbs, const std::string& words) {
   std::string text = "  local verb='' word\n  for word in " + words + "; do\n";
@@ -39,12 +43,19 @@ std::vector<std::string> flags_of(const VerbWords& verb) {
   return flags;
 }
 
-// What may follow the verb: those below it, or the choices of what has no flag.
-std::vector<std::string> words_after(const VerbWords& verb) {
-  auto words = verb.below;
+// The choices of what has no flag.
+std::vector<std::string> positional_choices(const VerbWords& verb) {
+  std::vector<std::string> words;
   for (const auto& option : verb.options) {
     if (option.positional) words.insert(words.end(), option.choices.begin(), option.choices.end());
   }
+  return words;
+}
+
+// What may follow the verb: those below it, or the choices of what has no flag.
+std::vector<std::string> words_after(const VerbWords& verb) {
+  auto words = positional_choices(verb);
+  words.insert(words.begin(), verb.below.begin(), verb.below.end());
   return words;
 }
 
@@ -54,7 +65,7 @@ std::string bash_choices(const VerbWords& verb) {
     if (option.choices.empty()) continue;
     for (const auto& name : option.names) {
       text += fmt::format("    {}) words={} ;;\n", quoted(full_name(verb) + ":" + name),
-                          quoted(fmt::format("{}", fmt::join(option.choices, " "))));
+                          quoted(spaced(option.choices)));
     }
   }
   return text;
@@ -70,15 +81,22 @@ std::string bash(const std::vector<VerbWords>& verbs) {
   for (const auto& verb : verbs) {
     const std::string name = full_name(verb);
     text += fmt::format("      {}*) words={} ;;\n", quoted(name + ":-"),
-                        quoted(fmt::format("{}", fmt::join(flags_of(verb), " "))));
+                        quoted(spaced(flags_of(verb))));
     const auto after = words_after(verb);
     if (after.empty()) continue;
-    text += fmt::format("      {}*) words={} ;;\n", quoted(name + ":"),
-                        quoted(fmt::format("{}", fmt::join(after, " "))));
+    text += fmt::format("      {}*) words={} ;;\n", quoted(name + ":"), quoted(spaced(after)));
   }
   text += "    esac\n  fi\n";
   text += "  mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$current\")\n}\n";
   return text + "complete -o bashdefault -o default -F _isotherm isotherm\n";
+}
+
+// What has a meaning of its own in an explanation of zsh.
+constexpr const char* kZshSpecial = ":\\[]";
+
+// What completes a value, or a word without a flag.
+std::string zsh_values(const std::vector<std::string>& choices) {
+  return choices.empty() ? "_files" : quoted("(" + spaced(choices) + ")");
 }
 
 // One line of _arguments: '(-o --output)'{-o,--output}'[help]:FILE:_files'
@@ -87,12 +105,9 @@ std::string zsh_option(const OptionWords& option) {
   if (option.names.size() > 1) {
     text = fmt::format("'({})'{{{}}}", fmt::join(option.names, " "), fmt::join(option.names, ","));
   }
-  text += quoted("[" + option.help + "]", ":\\");
+  text += "'['" + quoted(option.help, kZshSpecial) + "']'";
   if (option.value.empty()) return text;
-  text += quoted(":" + std::string(option.choices.empty() ? "value" : "choice") + ":");
-  return text + (option.choices.empty()
-                     ? "_files"
-                     : quoted(fmt::format("({})", fmt::join(option.choices, " "))));
+  return text + (option.choices.empty() ? ":value:" : ":choice:") + zsh_values(option.choices);
 }
 
 std::string zsh_verb(const VerbWords& verb, const std::vector<VerbWords>& verbs) {
@@ -101,8 +116,8 @@ std::string zsh_verb(const VerbWords& verb, const std::vector<VerbWords>& verbs)
     text += "      _values verb";
     for (const auto& name : verb.below) {
       const std::string whole = verb.name.empty() ? name : full_name(verb) + " " + name;
-      text += " \\\n        " + quoted(name) +
-              quoted("[" + find_verb(verbs, whole).summary + "]", ":\\");
+      text += " \\\n        " + quoted(name) + "'['" +
+              quoted(find_verb(verbs, whole).summary, kZshSpecial) + "']'";
     }
     return text + " ;;\n";
   }
@@ -111,7 +126,7 @@ std::string zsh_verb(const VerbWords& verb, const std::vector<VerbWords>& verbs)
     if (!option.names.front().starts_with('-')) continue;
     text += " \\\n        " + zsh_option(option);
   }
-  return text + " \\\n        '*:file:_files' ;;\n";
+  return text + " \\\n        '*:word:'" + zsh_values(positional_choices(verb)) + " ;;\n";
 }
 
 std::string zsh(const std::vector<VerbWords>& verbs) {
@@ -140,11 +155,19 @@ std::string fish_option(const VerbWords& verb, const OptionWords& option) {
     text += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
   }
   if (!option.choices.empty()) {
-    text += " -x -a " + quoted(fmt::format("{}", fmt::join(option.choices, " ")), "\\");
+    text += " -x -a " + quoted(spaced(option.choices), "\\");
   } else if (!option.value.empty()) {
     text += " -r";
   }
   return text + " -d " + quoted(option.help, "\\") + "\n";
+}
+
+// The line for what has no flag, if it is one of some words.
+std::string fish_positional(const VerbWords& verb) {
+  const auto choices = positional_choices(verb);
+  if (choices.empty()) return {};
+  return fmt::format("complete -c isotherm -f -n {} -a {}\n", quoted(fish_condition(verb), "\\"),
+                     quoted(spaced(choices), "\\"));
 }
 
 std::string fish(const std::vector<VerbWords>& verbs) {
@@ -156,6 +179,7 @@ std::string fish(const std::vector<VerbWords>& verbs) {
                           quoted(fish_condition(verb), "\\"), name,
                           quoted(find_verb(verbs, whole).summary, "\\"));
     }
+    text += fish_positional(verb);
     for (const auto& option : verb.options) {
       if (option.names.front().starts_with('-')) text += fish_option(verb, option);
     }

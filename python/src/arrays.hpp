@@ -126,6 +126,13 @@ inline nb::ndarray<nb::numpy, double, nb::shape<-1, -1>> give(Eigen::MatrixXd ma
 /// A table of columns by name. @throws ImportError, which says what to install, without pandas
 nb::object data_frame(const nb::dict& columns);
 
+/// Gives a class to_dataframe(), which `frame` makes and whose columns are `contents`.
+template <class Class, class Frame>
+void bind_data_frame(nb::class_<Class>& bound, Frame frame, const std::string& contents) {
+  bound.def("to_dataframe", frame, nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
+            (contents + ", as a table of pandas.").c_str());
+}
+
 /// What os.fspath() makes of `path`. @throws TypeError
 std::string path_of(nb::handle path);
 

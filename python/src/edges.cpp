@@ -46,7 +46,7 @@ Graph kept(const JudgedEdges& self, bool keep_ambiguous) {
 }
 
 std::string page(const JudgedEdges& self) {
-  return page_of(graph_of(self), self.options, self.result);
+  return page_of(nb::find(self), graph_of(self), self.options, self.result);
 }
 
 JudgedEdges judge(nb::handle_t<Graph> graph, nb::kwargs given) {
@@ -58,9 +58,10 @@ JudgedEdges judge(nb::handle_t<Graph> graph, nb::kwargs given) {
   const RunKeywords run = keywords.take_run();
   keywords.finish();
   const Graph& input = graph_of(judged);
-  judged.result = without_gil(run, [&](const RunContext& context) {
-    return judge_edges(input.graph, judged.options, input.points, context);
-  });
+  judged.result =
+      without_gil(run, judged.graph, [&input, options = judged.options](const RunContext& context) {
+        return judge_edges(input.graph, options, input.points, context);
+      });
   return judged;
 }
 
@@ -82,19 +83,13 @@ void bind_result(nb::class_<JudgedEdges>& bound) {
            "that are ambiguous.")
       .def("report", page, nb::sig("def report(self) -> str"),
            "The page that explains the result, as HTML that needs nothing else.")
-      .def("_repr_html_",
-           [](const JudgedEdges& self) {
-             return framed(graph_of(self).ids.size(), in_words(self.result.verdicts),
-                           [&self] { return page(self); });
-           })
-      .def(
-          "to_dataframe",
-          [](const JudgedEdges& self) {
-            const nb::object verdicts = nb::cast(named_verdicts(self));
-            return data_frame(columns(nb::cast<const Verdicts&>(verdicts), verdicts));
-          },
-          nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
-          "The verdicts, as a table of pandas.");
+      .def("_repr_html_", [](const JudgedEdges& self) {
+        return framed(graph_of(self).ids.size(), in_words(self.result.verdicts),
+                      [&self] { return page(self); });
+      });
+  bind_data_frame(
+      bound, [](const JudgedEdges& self) { return data_frame(named_verdicts(self)); },
+      "The verdicts");
 }
 
 }  // namespace

@@ -29,12 +29,12 @@ Graph join_points(const char* name, nb::handle rows, nb::kwargs given, Join join
   Keywords keywords(name, std::move(given));
   const RunKeywords run = keywords.take_run();
   keywords.finish();
-  Graph made;
-  made.points = columns_of(rows, "points");
-  made.graph =
-      without_gil(run, [&](const RunContext& context) { return join(made.points, context); });
-  made.ids = counted_ids(made.graph.vertex_count());
-  return made;
+  return without_gil(run, nb::none(),
+                     [points = columns_of(rows, "points"), join](const RunContext& context) {
+                       spectral::WeightedGraph graph = join(points, context);
+                       auto ids = counted_ids(graph.vertex_count());
+                       return Graph{std::move(graph), std::move(ids), points};
+                     });
 }
 
 Graph nearest(nb::handle points, int neighbours, nb::kwargs given) {
@@ -79,10 +79,11 @@ std::vector<CurveDescriptor<Dim>> describe(const Input<double>& points,
   for (std::size_t k = 0; k < list.size(); ++k) {
     list[k] = Eigen::Map<const Point>(points.data() + k * Dim);
   }
-  const Polyline<Dim> line(std::move(list));
-  return without_gil(run, [&](const RunContext& context) {
-    return lap_lines(line, vertices, options, context.threads, context.progress);
-  });
+  return without_gil(
+      run, nb::none(),
+      [line = Polyline<Dim>(std::move(list)), vertices, options](const RunContext& context) {
+        return lap_lines(line, vertices, options, context.threads, context.progress);
+      });
 }
 
 using Descriptors = std::variant<std::vector<CurveDescriptor<2>>, std::vector<CurveDescriptor<3>>>;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <nanobind/nanobind.h>
@@ -28,5 +29,14 @@ std::vector<spectral::VertexPair> pairs_from(nb::handle value, const char* what)
 
 /// What was noticed about a file: a dictionary of counts, and sentences.
 nb::dict report_of(const ReadReport& report);
+
+/// Gives a class `report`, on the file that it, `what` in words, was read from.
+template <class Class>
+void bind_read_report(nb::class_<Class>& bound, const std::string& what) {
+  bound.def_prop_ro(
+      "report", [](const Class& self) { return report_of(self.report); },
+      nb::sig("def report(self) -> dict[str, object]"),
+      ("What was noticed in the file that " + what + " was read from.").c_str());
+}
 
 }  // namespace isotherm::python

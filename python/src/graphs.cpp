@@ -136,7 +136,7 @@ View1<double> weights_of(const Graph& self) {
 }
 
 nb::object edge_frame(nb::handle_t<Graph> self) {
-  nb::dict columns;
+  const nb::dict columns;
   const nb::object ids = self.attr("ids");
   const nb::object ends = ids[self.attr("edges")];
   columns["from"] = ends.attr("T")[0];
@@ -215,13 +215,9 @@ void bind_contents(nb::class_<Graph>& bound) {
             return rows_of(self.points, nb::find(self));
           },
           nb::sig("def points(self) -> numpy.typing.NDArray[numpy.float64] | None"),
-          "Where the vertices are, n x d, if that is known.")
-      .def_prop_ro(
-          "report", [](const Graph& self) { return report_of(self.report); },
-          nb::sig("def report(self) -> dict[str, object]"),
-          "What was noticed in the file that the graph was read from.")
-      .def("to_dataframe", edge_frame, nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
-           "from, to and weight of each edge, as a table of pandas.");
+          "Where the vertices are, n x d, if that is known.");
+  bind_read_report(bound, "the graph");
+  bind_data_frame(bound, edge_frame, "from, to and weight of each edge");
 }
 
 void bind_class(nb::module_& module) {
@@ -318,7 +314,7 @@ void bind_graphs(nb::module_& module) {
         Keywords keywords("automatic_scales", std::move(given));
         const RunKeywords run = keywords.take_run();
         keywords.finish();
-        return give(without_gil(run, [&](const RunContext& context) {
+        return give(without_gil(run, nb::find(graph), [&graph](const RunContext& context) {
           return spectral::automatic_scales(graph.graph, context);
         }));
       },

@@ -84,6 +84,16 @@ requires std::is_enum_v<Enum> std::string text(Enum value) {
 
 }  // namespace detail
 
+/// What Python has of a field's value.
+template <class T>
+nb::object python_value(const T& value) {
+  if constexpr (std::is_enum_v<T>) {
+    return nb::cast(std::string(enum_name(value)));
+  } else {
+    return nb::cast(value);
+  }
+}
+
 /// The keywords of one call, each of which is taken once.
 class Keywords {
  public:

@@ -120,7 +120,7 @@ nb::object range_frame(nb::handle_t<Network> self) {
     from.push_back(network.names[range.from]);
     to.push_back(network.names[range.to]);
   }
-  nb::dict columns;
+  const nb::dict columns;
   columns["from"] = from;
   columns["to"] = to;
   columns["range"] = member_view(network.ranges, &RangeMeasurement::distance, self);
@@ -164,12 +164,12 @@ Localized locate(nb::handle_t<Network> network, nb::kwargs given) {
   const RunKeywords run = keywords.take_run();
   keywords.finish();
   const auto& of = nb::cast<const Network&>(network);
-  auto result = without_gil(run, [&](const RunContext& context) {
-    auto own = options;
-    own.threads = context.threads;
-    own.progress = context.progress;
-    return localize(of, own);
-  });
+  auto result = without_gil(run, nb::borrow(network),
+                            [&of, own = options](const RunContext& context) mutable {
+                              own.threads = context.threads;
+                              own.progress = context.progress;
+                              return localize(of, own);
+                            });
   return {std::move(result), nb::borrow(network), options};
 }
 
@@ -199,7 +199,7 @@ nb::object node_frame(nb::handle_t<Localized> self) {
   const auto& result = nb::cast<const Localized&>(self);
   constexpr const char* kAxes[] = {"x", "y", "z"};
   const auto d = static_cast<std::size_t>(result.positions.rows());
-  nb::dict columns;
+  const nb::dict columns;
   columns["node"] = network_of(result).names;
   for (std::size_t axis = 0; axis < d; ++axis) {
     columns[kAxes[axis]] =
@@ -211,7 +211,7 @@ nb::object node_frame(nb::handle_t<Localized> self) {
 
 std::string page(const Localized& self, nb::handle truth) {
   const auto& network = network_of(self);
-  return page_of(network, network.report.path, self.options, self, truth);
+  return page_of(nb::find(self), network, network.report.path, self.options, self, truth);
 }
 
 std::string notebook_page(const Localized& self) {
@@ -225,7 +225,8 @@ nb::tuple simulate(nb::kwargs given) {
   keywords.take_fields(options);
   keywords.take_into("seed", options.seed);
   keywords.finish();
-  auto made = without_gil({}, [&](const RunContext&) { return simulate_network(options); });
+  auto made = without_gil({}, nb::none(),
+                          [options](const RunContext&) { return simulate_network(options); });
   std::vector<std::int8_t> origins;
   for (const auto origin : made.origins) origins.push_back(static_cast<std::int8_t>(origin));
   const Eigen::MatrixXd truth = made.truth.transpose();
@@ -282,13 +283,9 @@ void bind_contents(nb::class_<Network>& bound) {
           "Where the nodes are said to be, n x d; NaN where that is not known.")
       .def_prop_ro(
           "anchors", [](const Network& self) { return view(self.landmarks, nb::find(self)); },
-          "Nodes that do not move.")
-      .def_prop_ro(
-          "report", [](const Network& self) { return report_of(self.report); },
-          nb::sig("def report(self) -> dict[str, object]"),
-          "What was noticed in the file that the network was read from.")
-      .def("to_dataframe", range_frame, nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
-           "from, to, range and variance, as a table of pandas.");
+          "Nodes that do not move.");
+  bind_read_report(bound, "the network");
+  bind_data_frame(bound, range_frame, "from, to, range and variance");
 }
 
 void bind_network(nb::module_& module) {
@@ -301,7 +298,8 @@ void bind_network(nb::module_& module) {
 }
 
 void bind_result(nb::module_& module) {
-  nb::class_<Localized>(module, "Localized", "Where the nodes of a network are.")
+  nb::class_<Localized> bound(module, "Localized", "Where the nodes of a network are.");
+  bound
       .def_prop_ro(
           "positions",
           [](const Localized& self) { return rows_of(self.positions, nb::find(self)); },
@@ -337,9 +335,8 @@ void bind_result(nb::module_& module) {
             write_positions(path_of(path), network_of(self), self);
           },
           "path"_a, nb::sig("def write(self, path: str | os.PathLike[str]) -> None"),
-          "Write rows of node, position, status, deviation and covariance, as CSV.")
-      .def("to_dataframe", node_frame, nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
-           "node, position and status, as a table of pandas.");
+          "Write rows of node, position, status, deviation and covariance, as CSV.");
+  bind_data_frame(bound, node_frame, "node, position and status");
 }
 
 Network read(nb::handle path, bool strict, bool file_anchors) {

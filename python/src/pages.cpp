@@ -1,6 +1,7 @@
 #include "pages.hpp"
 
 #include <filesystem>
+#include <utility>
 
 #include "report/build/graph_report.hpp"
 #include "report/build/network_report.hpp"
@@ -40,16 +41,18 @@ std::string title_of(const std::string& path, const std::string& otherwise) {
 
 std::string page_of(const apps::Report& report) { return apps::report_page(apps::to_json(report)); }
 
-std::string page_of(const Graph& graph, const spectral::JudgeEdgesOptions& options,
+std::string page_of(nb::object owner, const Graph& graph,
+                    const spectral::JudgeEdgesOptions& options,
                     const spectral::JudgeEdgesResult& result) {
-  const apps::EdgesRun run{title_of(graph.report.path, "graph"), options, graph.ids, graph.points};
-  return without_gil({}, [&](const RunContext& context) {
+  return without_gil({}, std::move(owner), [&graph, &result, options](const RunContext& context) {
+    const apps::EdgesRun run{title_of(graph.report.path, "graph"), options, graph.ids,
+                             graph.points};
     const auto left = spectral::apply_verdicts(graph.graph, result.verdicts);
     return page_of(apps::graph_report(graph.graph, left, result, run, context));
   });
 }
 
-std::string page_of(const network::RangeNetwork& network, const std::string& path,
+std::string page_of(nb::object owner, const network::RangeNetwork& network, const std::string& path,
                     const network::LocalizeOptions& options, const network::LocalizeResult& result,
                     nb::handle truth) {
   apps::LocalizeRun run{title_of(path, "network"), options, {}};
@@ -57,8 +60,9 @@ std::string page_of(const network::RangeNetwork& network, const std::string& pat
     run.truth = columns_of(truth, "truth", network.dimension);
     require_length("truth", static_cast<std::size_t>(run.truth.cols()), network.names.size());
   }
-  return without_gil(
-      {}, [&](const RunContext&) { return page_of(apps::network_report(network, result, run)); });
+  return without_gil({}, std::move(owner), [&network, &result, run](const RunContext&) {
+    return page_of(apps::network_report(network, result, run));
+  });
 }
 
 std::string framed(std::size_t vertices, const std::string& summary,

@@ -19,12 +19,13 @@ std::string title_of(const std::string& path, const std::string& otherwise);
 
 std::string page_of(const apps::Report& report);
 
-/// Vertices of the result are positions.
-std::string page_of(const Graph& graph, const spectral::JudgeEdgesOptions& options,
+/// Vertices of the result are positions. `owner` has graph and result.
+std::string page_of(nb::object owner, const Graph& graph,
+                    const spectral::JudgeEdgesOptions& options,
                     const spectral::JudgeEdgesResult& result);
 
-/// `truth` holds a position a node (NaN: not known), or is None.
-std::string page_of(const network::RangeNetwork& network, const std::string& path,
+/// `truth` holds a position a node (NaN: not known), or is None. `owner` has network and result.
+std::string page_of(nb::object owner, const network::RangeNetwork& network, const std::string& path,
                     const network::LocalizeOptions& options, const network::LocalizeResult& result,
                     nb::handle truth);
 

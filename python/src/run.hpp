@@ -1,19 +1,17 @@
 #pragma once
 
-#include <chrono>
 #include <cstdint>
-#include <exception>
-#include <string>
+#include <memory>
+#include <optional>
+#include <type_traits>
 #include <utility>
 
 #include <nanobind/nanobind.h>
 
-#include "isotherm/base/error.hpp"
 #include "isotherm/base/run_context.hpp"
+#include "work.hpp"
 
 namespace isotherm::python {
-
-namespace nb = nanobind;
 
 /// How a call is to run, besides what it computes: the keywords that all long calls have.
 struct RunKeywords {
@@ -22,64 +20,44 @@ struct RunKeywords {
   nb::object progress = nb::none();
 };
 
-/// Hears what a computation reports: passes it on to Python, and stops the computation where
-/// Python has a signal to handle (Ctrl-C), or the function that is told raises or returns False.
-class Listener {
- public:
-  explicit Listener(nb::object told) : told_(std::move(told)) {}
-
-  /// Called without the GIL.
-  bool hear(const Progress& progress);
-
-  /// Raises in Python what ended the computation, if anything did. With the GIL.
-  void raise() const {
-    if (raised_) std::rethrow_exception(raised_);
-  }
-
- private:
-  bool is_news(const Progress& progress);
-
-  nb::object told_;
-  std::exception_ptr raised_;
-  std::string stage_;
-  std::chrono::steady_clock::time_point next_;
-};
-
 namespace detail {
 
-/// One computation at a time, and all of it on one thread where libraries below would divide it.
-///
-/// The serial BLAS that CHOLMOD calls may not be called from two threads at once. Other
-/// threads of Python run meanwhile; a progress function may call the library again.
-class Turn {
+template <class Body>
+class WorkOf final : public Work {
  public:
-  /// Waits, without the GIL; raises in Python what a signal raises meanwhile.
-  Turn();
-  ~Turn();
-  Turn(const Turn&) = delete;
-  Turn& operator=(const Turn&) = delete;
+  using Result = std::invoke_result_t<Body&, const RunContext&>;
+
+  WorkOf(const RunKeywords& keywords, nb::object owner, Body body)
+      : Work(std::move(owner)),
+        context_{keywords.threads, {}, keywords.seed},
+        body_(std::move(body)) {}
+
+  Result take() { return std::move(*result_); }
 
  private:
-  int openmp_levels_ = 0;
+  void compute(const ProgressCallback& progress) override {
+    context_.progress = progress;
+    result_.emplace(body_(context_));
+  }
+
+  RunContext context_;
+  Body body_;
+  std::optional<Result> result_;
 };
 
 }  // namespace detail
 
-/// Gives what body(context) gives, run without the GIL.
+/// Gives what body(context) gives, run without the GIL, and so that Ctrl-C ends the call.
+///
+/// `owner` is the object of Python, or None, whose parts the body refers to. Whatever else the
+/// body uses is its own: it may run on for a while after the call was interrupted.
 template <class Body>
-auto without_gil(const RunKeywords& keywords, Body&& body) {
-  Listener listener(keywords.progress);
-  const RunContext context{
-      keywords.threads, [&listener](const Progress& progress) { return listener.hear(progress); },
-      keywords.seed};
-  try {
-    const nb::gil_scoped_release released;
-    const detail::Turn turn;
-    return std::forward<Body>(body)(context);
-  } catch (const Cancelled&) {
-    listener.raise();
-    throw;
-  }
+auto without_gil(const RunKeywords& keywords, nb::object owner, Body body) {
+  using Own = detail::WorkOf<Body>;
+  const Turn turn;
+  std::unique_ptr<Work> work = std::make_unique<Own>(keywords, std::move(owner), std::move(body));
+  Work::carry_out(work, keywords.progress);
+  return static_cast<Own&>(*work).take();
 }
 
 }  // namespace isotherm::python

@@ -31,8 +31,8 @@ Coordinates embed_graph(const Graph& graph, nb::kwargs given) {
   keywords.take_fields(options);
   const RunKeywords run = keywords.take_run();
   keywords.finish();
-  return {without_gil(run,
-                      [&](const RunContext& context) {
+  return {without_gil(run, nb::find(graph),
+                      [&graph, options](const RunContext& context) {
                         return embed(graph.graph, options, context.progress);
                       }),
           graph.ids};
@@ -40,7 +40,7 @@ Coordinates embed_graph(const Graph& graph, nb::kwargs given) {
 
 nb::object coordinate_frame(nb::handle_t<Coordinates> self) {
   const auto& result = nb::cast<const Coordinates&>(self);
-  nb::dict columns;
+  const nb::dict columns;
   columns["vertex"] = view(result.ids, self);
   for (Eigen::Index c = 0; c < result.rows.cols(); ++c) {
     const std::string name = "x" + std::to_string(c);
@@ -58,10 +58,11 @@ EigenDecomposition eigenpairs(const Graph& graph, const std::string& kind, nb::k
   const RunKeywords run = keywords.take_run();
   keywords.finish();
   const auto of = enum_value<LaplacianKind>("kind", kind);
-  return without_gil(run, [&](const RunContext& context) {
-    options.progress = context.progress;
-    return smallest_eigenpairs(Laplacian(graph.graph, of), options);
-  });
+  return without_gil(run, nb::find(graph),
+                     [&graph, of, options](const RunContext& context) mutable {
+                       options.progress = context.progress;
+                       return smallest_eigenpairs(Laplacian(graph.graph, of), options);
+                     });
 }
 
 HeatDistanceResult heat(const Graph& graph, nb::handle pairs, nb::handle scales, nb::kwargs given) {
@@ -70,13 +71,14 @@ HeatDistanceResult heat(const Graph& graph, nb::handle pairs, nb::handle scales,
   keywords.take_fields(options);
   const RunKeywords run = keywords.take_run();
   keywords.finish();
-  const auto of = pairs_from(pairs, "pairs");
-  const auto times = number_list<double>(scales, "scales");
-  return without_gil(run, [&](const RunContext& context) {
-    options.threads = context.threads;
-    options.progress = context.progress;
-    return heat_distances(graph.graph, of, times, options);
-  });
+  return without_gil(
+      run, nb::find(graph),
+      [&graph, options, of = pairs_from(pairs, "pairs"),
+       times = number_list<double>(scales, "scales")](const RunContext& context) mutable {
+        options.threads = context.threads;
+        options.progress = context.progress;
+        return heat_distances(graph.graph, of, times, options);
+      });
 }
 
 View2<double> heat_view(const HeatDistanceResult& self, double CertifiedValue::*member) {
@@ -92,10 +94,14 @@ ResistanceResult resistances(const Graph& graph, nb::handle pairs, nb::kwargs gi
   Keywords keywords("effective_resistances", std::move(given));
   const RunKeywords run = keywords.take_run();
   keywords.finish();
-  const auto of = pairs.is_none() ? std::vector<VertexPair>() : pairs_from(pairs, "pairs");
-  return without_gil(run, [&](const RunContext&) {
-    return pairs.is_none() ? edge_resistances(graph.graph) : effective_resistances(graph.graph, of);
-  });
+  if (pairs.is_none()) {
+    return without_gil(run, nb::find(graph),
+                       [&graph](const RunContext&) { return edge_resistances(graph.graph); });
+  }
+  return without_gil(run, nb::find(graph),
+                     [&graph, of = pairs_from(pairs, "pairs")](const RunContext&) {
+                       return effective_resistances(graph.graph, of);
+                     });
 }
 
 void bind_eigenpairs(nb::module_& module) {
@@ -126,7 +132,8 @@ void bind_eigenpairs(nb::module_& module) {
 }
 
 void bind_embedding(nb::module_& module) {
-  nb::class_<Coordinates>(module, "Embedding", "Coordinates for the vertices of a graph.")
+  nb::class_<Coordinates> bound(module, "Embedding", "Coordinates for the vertices of a graph.");
+  bound
       .def_prop_ro(
           "coordinates", [](const Coordinates& self) { return view(self.rows, nb::find(self)); },
           "One row a vertex, n x k; fewer columns than asked for where there are no more.")
@@ -136,9 +143,8 @@ void bind_embedding(nb::module_& module) {
       .def_ro("components", &EmbedResult::components, "Connected components of the graph.")
       .def_prop_ro(
           "ids", [](const Coordinates& self) { return view(self.ids, nb::find(self)); },
-          "The number that the input gives to each vertex, n.")
-      .def("to_dataframe", coordinate_frame, nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
-           "vertex, x0, x1 and so on, as a table of pandas.");
+          "The number that the input gives to each vertex, n.");
+  bind_data_frame(bound, coordinate_frame, "vertex, x0, x1 and so on");
 }
 
 void bind_heat_distances(nb::module_& module) {

@@ -104,14 +104,13 @@ void bind_reasons(nb::class_<Verdicts>& bound) {
             spectral::write_verdicts(path_of(path), self.rows, self.names);
           },
           "path"_a, nb::sig("def write(self, path: str | os.PathLike[str]) -> None"),
-          "Write the verdict file that the command writes, as CSV.")
-      .def(
-          "to_dataframe",
-          [](nb::handle_t<Verdicts> self) {
-            return data_frame(columns(nb::cast<const Verdicts&>(self), self));
-          },
-          nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
-          "The columns of the verdict file, as a table of pandas.");
+          "Write the verdict file that the command writes, as CSV.");
+  bind_data_frame(
+      bound,
+      [](nb::handle_t<Verdicts> self) {
+        return data_frame(columns(nb::cast<const Verdicts&>(self), self));
+      },
+      "The columns of the verdict file");
 }
 
 }  // namespace
@@ -137,6 +136,11 @@ nb::dict columns(const Verdicts& verdicts, nb::handle owner) {
     all["probability"] = member_view(verdicts.rows, &EdgeVerdict::probability, owner);
   }
   return all;
+}
+
+nb::object data_frame(Verdicts verdicts) {
+  const nb::object owner = nb::cast(std::move(verdicts));
+  return data_frame(columns(nb::cast<const Verdicts&>(owner), owner));
 }
 
 void bind_verdicts(nb::module_& module) {

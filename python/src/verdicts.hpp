@@ -32,4 +32,7 @@ std::string in_words(const spectral::EdgeVerdicts& rows);
 /// The columns of a verdict file, by their names.
 nb::dict columns(const Verdicts& verdicts, nb::handle owner);
 
+/// The same, as a table of pandas.
+nb::object data_frame(Verdicts verdicts);
+
 }  // namespace isotherm::python

@@ -71,4 +71,32 @@ TEST_F(HardInput, AnOptimisationThatDiverges) {
   }
 }
 
+TEST_F(HardInput, InformationBeyondAllMeasureIsLocated) {
+  write_graph("1e300 0 0 1e300 0 1e300");
+  const auto result = run("prune in.g2o --verdicts -");
+  EXPECT_EQ(result.code, 3);
+  EXPECT_THAT(result.err, HasSubstr("in.g2o:3:"));
+  EXPECT_THAT(result.err, HasSubstr("1e300"));
+}
+
+TEST_F(HardInput, ARowThatIsThereTwiceIsLocated) {
+  write_text(folder / "verdicts.csv",
+             "edge,from,to,verdict,score,threshold,stage\n1,0,5,keep,0,1,a\n1,0,5,prune,2,1,a\n");
+  write_text(folder / "labels.csv", "edge,from,to,label\n1,0,5,correct\n");
+  const auto result = run("eval loops verdicts.csv labels.csv");
+  EXPECT_EQ(result.code, 3);
+  EXPECT_THAT(result.err, HasSubstr("verdicts.csv:3:1: edge occurs twice (got '1')"));
+}
+
+TEST_F(HardInput, ATimeThatIsThereTwiceCountsOnce) {
+  const auto row = [](int time) {
+    return std::to_string(time) + " " + std::to_string(time * time) + " 0 0 0 0 0 1\n";
+  };
+  write_text(folder / "truth.tum", row(0) + row(1) + row(2) + row(3));
+  write_text(folder / "estimate.tum", row(0) + row(1) + row(2) + row(2) + row(3));
+  const auto result = run("eval ate estimate.tum truth.tum --align none");
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("max 0.0000 m  (4 pairs)"));
+}
+
 }  // namespace

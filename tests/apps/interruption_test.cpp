@@ -68,6 +68,24 @@ TEST_F(Interruption, IsHeededWhileComputing) {
   }
 }
 
+// 80,000 loops between the same few places, in which every two can be compared.
+TEST_F(Interruption, IsHeededAmongManyLoopsOfOnePlace) {
+  std::string text;
+  const std::string information = " 0 0 400 0 0 400 0 10000\n";
+  for (int v = 0; v + 1 < 2000; ++v) {
+    text += "EDGE_SE2 " + std::to_string(v) + " " + std::to_string(v + 1) + " 1" + information;
+  }
+  for (int k = 0; k < 80000; ++k) {
+    const int from = k % 3;
+    const int to = 1500 + k % 5;
+    text += "EDGE_SE2 " + std::to_string(from) + " " + std::to_string(to) + " " +
+            std::to_string(to - from + 1e-6 * k) + information;
+  }
+  write_text(folder / "many.g2o", text);
+  EXPECT_EQ(run_until("INT", "prune many.g2o -o out -q"), kInterrupted);
+  expect_untouched("prune");
+}
+
 // Whether the process has a handler of its own, for which a busy machine takes its time.
 bool heeds_interrupts(pid_t process) {
   std::ifstream status("/proc/" + std::to_string(process) + "/status");

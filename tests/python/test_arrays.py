@@ -151,6 +151,7 @@ def test_views_cannot_be_written(city, cloud, sensors):
 def test_views_are_the_same_memory_each_time(city, cloud, sensors):
     for graph, names in [
         (city[0], ["ids", "poses", "edges", "measurements", "information"]),
+        (slam.simulate_sphere(poses=60)[0], ["poses", "measurements", "information"]),
         (cloud, ["edges", "weights", "points", "ids"]),
         (sensors[0], ["edges", "ranges", "positions"]),
     ]:

@@ -163,6 +163,18 @@ def test_chi_squared_is_that_of_the_residuals(city):
     assert np.isclose(solved.final_cost, chi2.sum())
 
 
+def test_the_paper_is_a_set_of_keywords(city):
+    keywords = slam.datta2016()
+    assert keywords["method"] == "heat"
+    assert set(keywords) - {"method"} == set(slam.prune_methods()["heat"])
+    as_in_the_paper = slam.prune(city[0], **keywords)
+    plain = slam.prune(city[0], "heat")
+    assert as_in_the_paper.method == "heat"
+    assert not np.array_equal(as_in_the_paper.verdicts.score, plain.verdicts.score)
+    changed = slam.prune(city[0], **keywords | {"konst": [3.0]})
+    assert changed.verdicts.counts["prune"] <= as_in_the_paper.verdicts.counts["prune"]
+
+
 def test_trusted_edges_are_not_judged(city):
     graph, labels, _ = city
     trusted = np.concatenate([graph.roles()[0], labels.edge[:5]])

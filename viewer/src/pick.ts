@@ -17,6 +17,22 @@ export function squaredDistance(
   return ex * ex + ey * ey;
 }
 
+/** The nearest of what is offered, if it is within `reach`; of equals the last. */
+class Nearest {
+  found = -1;
+  private least: number;
+
+  constructor(reach: number) {
+    this.least = reach * reach;
+  }
+
+  offer(what: number, squared: number): void {
+    if (!(squared <= this.least)) return;
+    this.least = squared;
+    this.found = what;
+  }
+}
+
 /** The candidate whose line is nearest to a pixel, if one is within `reach`; else -1. */
 export function pick(
   layers: readonly DrawLayer[],
@@ -25,21 +41,16 @@ export function pick(
   y: number,
   reach: number,
 ): number {
-  let best = reach * reach;
-  let found = -1;
+  const nearest = new Nearest(reach);
   for (const layer of layers) {
     if (!layer.candidates) continue;
     for (let k = 0; k < layer.candidates.length; ++k) {
       const from = projectNode(projection, layer.positions, layer.lines[2 * k]);
       const to = projectNode(projection, layer.positions, layer.lines[2 * k + 1]);
-      const distance = squaredDistance(x, y, from, to);
-      if (distance <= best) {
-        best = distance;
-        found = layer.candidates[k];
-      }
+      nearest.offer(layer.candidates[k], squaredDistance(x, y, from, to));
     }
   }
-  return found;
+  return nearest.found;
 }
 
 /** The node that is nearest to a pixel, if one is within `reach`; else -1. */
@@ -50,15 +61,10 @@ export function nearestNode(
   y: number,
   reach: number,
 ): number {
-  let best = reach * reach;
-  let found = -1;
+  const nearest = new Nearest(reach);
   for (let node = 0; 3 * node < positions.length; ++node) {
     const [px, py] = projectNode(projection, positions, node);
-    const distance = (px - x) ** 2 + (py - y) ** 2;
-    if (distance <= best) {
-      best = distance;
-      found = node;
-    }
+    nearest.offer(node, (px - x) ** 2 + (py - y) ** 2);
   }
-  return found;
+  return nearest.found;
 }

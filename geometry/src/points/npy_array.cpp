@@ -10,7 +10,7 @@
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/text_reader.hpp"
 
-namespace isotherm::geometry {
+namespace isotherm::geometry::detail {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
@@ -115,4 +115,4 @@ Eigen::MatrixXd read_npy(const std::string& path, std::string_view bytes) {
   return NpyReader(path, bytes).run();
 }
 
-}  // namespace isotherm::geometry
+}  // namespace isotherm::geometry::detail

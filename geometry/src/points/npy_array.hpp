@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-namespace isotherm::geometry {
+namespace isotherm::geometry::detail {
 
 /// How every NumPy file begins.
 inline constexpr std::string_view kNpyMagic = "\x93NUMPY";
@@ -15,4 +15,4 @@ inline constexpr std::string_view kNpyMagic = "\x93NUMPY";
 /// @throws ParseError naming `path`
 Eigen::MatrixXd read_npy(const std::string& path, std::string_view bytes);
 
-}  // namespace isotherm::geometry
+}  // namespace isotherm::geometry::detail

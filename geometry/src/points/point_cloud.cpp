@@ -91,7 +91,7 @@ PointCloudFile read_array(const std::string& path, std::string_view bytes) {
   PointCloudFile file;
   file.report.path = path;
   file.report.format = "npy";
-  file.points = read_npy(path, bytes).transpose();
+  file.points = detail::read_npy(path, bytes).transpose();
   file.report.records["point"] = static_cast<std::uint64_t>(file.points.cols());
   sort_by_id(file);
   return file;
@@ -110,7 +110,7 @@ PointCloudFile read_points(TextReader& reader) {
 
 PointCloudFile read_points(const std::string& path) {
   TextReader reader(path);
-  if (!reader.peek().starts_with(kNpyMagic)) return read_points(reader);
+  if (!reader.peek().starts_with(detail::kNpyMagic)) return read_points(reader);
   if (path == "-") {
     throw ParseError({path, 0, 0}, "", "a NumPy array is read from a file, not from a stream");
   }

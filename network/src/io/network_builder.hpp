@@ -11,7 +11,7 @@
 
 #include "isotherm/network/range_network.hpp"
 
-namespace isotherm::network {
+namespace isotherm::network::detail {
 
 /// Collects the nodes of a file by name and keeps the positions that are given.
 class NetworkBuilder {
@@ -64,4 +64,4 @@ class NetworkBuilder {
   std::unordered_map<std::string, Index> indices_;
 };
 
-}  // namespace isotherm::network
+}  // namespace isotherm::network::detail

@@ -1,6 +1,6 @@
 #include "io/range_fields.hpp"
 
-namespace isotherm::network {
+namespace isotherm::network::detail {
 
 bool next_content_line(TextReader& text) {
   while (text.next_line()) {
@@ -19,4 +19,4 @@ double distance_field(TextReader& text) {
   return distance;
 }
 
-}  // namespace isotherm::network
+}  // namespace isotherm::network::detail

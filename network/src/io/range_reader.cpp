@@ -28,7 +28,7 @@ class PyfgReader {
   PyfgReader(TextReader& text, ReadReport& report) : text_(text), report_(report) {}
 
   RangeNetwork run() {
-    while (next_content_line(text_)) read_record();
+    while (detail::next_content_line(text_)) read_record();
     return builder_.finish(dimension_ == 0 ? 2 : dimension_);
   }
 
@@ -83,8 +83,8 @@ class PyfgReader {
     measurement.timestamp = text_.number("a time stamp");
     measurement.from = builder_.node(text_.word("the name of the first node"));
     measurement.to = builder_.node(text_.word("the name of the second node"));
-    require_other_end(text_, measurement);
-    measurement.distance = distance_field(text_);
+    detail::require_other_end(text_, measurement);
+    measurement.distance = detail::distance_field(text_);
     measurement.variance = variance_field(text_);
     measurement.line = text_.line_number();
     builder_.add_range(measurement);
@@ -92,14 +92,14 @@ class PyfgReader {
 
   TextReader& text_;
   ReadReport& report_;
-  NetworkBuilder builder_;
+  detail::NetworkBuilder builder_;
   int dimension_ = 0;
 };
 
 // range2 time range variance anchor_x anchor_y anchor_id signal
 RangeNetwork read_librsf(TextReader& text, ReadReport& report) {
-  NetworkBuilder builder;
-  while (next_content_line(text)) {
+  detail::NetworkBuilder builder;
+  while (detail::next_content_line(text)) {
     const std::string tag(text.word());
     if (tag != "range2") {
       if (!starts_with_letter(tag)) text.fail("expected a record tag such as range2");
@@ -108,7 +108,7 @@ RangeNetwork read_librsf(TextReader& text, ReadReport& report) {
     }
     RangeMeasurement measurement;
     measurement.timestamp = text.number("a time stamp");
-    measurement.distance = distance_field(text);
+    measurement.distance = detail::distance_field(text);
     measurement.variance = variance_field(text);
     const double x = text.number("the x of the anchor");
     const double y = text.number("the y of the anchor");
@@ -132,7 +132,7 @@ RangeNetwork read_csv(TextReader& text, ReadReport& report) {
   const auto to = csv.column("to", 1);
   const auto range = csv.column("range", 2);
   const auto named_sigma = csv.find_column("sigma");
-  NetworkBuilder builder;
+  detail::NetworkBuilder builder;
   while (csv.next_row()) {
     RangeMeasurement measurement;
     measurement.from = builder.node(csv.text(from, "the first node"));
@@ -183,8 +183,8 @@ RangeNetwork read_by_content(TextReader& text, const ReadOptions& options, ReadR
     return PyfgReader(text, report).run();
   }
   // The first row decides: here a row that differs is an error, with its line.
-  return read_range_rows(text, detect_range_rows(start.substr(0, start.find('\n'))), options,
-                         report);
+  return detail::read_range_rows(text, detect_range_rows(start.substr(0, start.find('\n'))),
+                                 options, report);
 }
 
 }  // namespace

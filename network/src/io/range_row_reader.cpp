@@ -6,7 +6,7 @@
 #include "io/network_builder.hpp"
 #include "io/range_fields.hpp"
 
-namespace isotherm::network {
+namespace isotherm::network::detail {
 namespace {
 
 constexpr double kMetresPerMicrosecond = 299.792458;  // light
@@ -120,4 +120,4 @@ RangeNetwork read_range_rows(TextReader& text, RangeRows kind, const ReadOptions
   return builder.finish(format.dimension);
 }
 
-}  // namespace isotherm::network
+}  // namespace isotherm::network::detail

@@ -5,7 +5,7 @@
 #include "isotherm/network/io/range_rows.hpp"
 #include "isotherm/network/range_network.hpp"
 
-namespace isotherm::network {
+namespace isotherm::network::detail {
 
 /// Reads rows of the given kind; RangeRows::none is read as intervals, whose errors
 /// then say what is wrong. Names the format in `report`. Negative times of flight, which
@@ -14,4 +14,4 @@ namespace isotherm::network {
 RangeNetwork read_range_rows(TextReader& text, RangeRows kind, const ReadOptions& options,
                              ReadReport& report);
 
-}  // namespace isotherm::network
+}  // namespace isotherm::network::detail

@@ -37,7 +37,7 @@ View2<std::uint64_t> label_ends(const Labels& labels) {
 
 nb::object label_frame(nb::handle_t<Labels> self) {
   const auto& labels = nb::cast<const Labels&>(self);
-  nb::dict columns;
+  const nb::dict columns;
   columns["edge"] = member_view(labels.rows, &EdgeLabel::edge, self);
   columns["from"] = member_view(labels.rows, &EdgeLabel::from, self);
   columns["to"] = member_view(labels.rows, &EdgeLabel::to, self);
@@ -132,8 +132,9 @@ void write_poses(nb::handle path, nb::handle poses, nb::handle timestamps,
 }
 
 void bind_labels(nb::module_& module) {
-  nb::class_<Labels>(module, "Labels", "What ground truth says about the candidates of a graph.")
-      .def("__len__", [](const Labels& self) { return self.rows.size(); })
+  nb::class_<Labels> bound(module, "Labels",
+                           "What ground truth says about the candidates of a graph.");
+  bound.def("__len__", [](const Labels& self) { return self.rows.size(); })
       .def_prop_ro(
           "edge",
           [](const Labels& self) {
@@ -146,9 +147,8 @@ void bind_labels(nb::module_& module) {
           "write",
           [](const Labels& self, nb::handle path) { write_labels(path_of(path), self.rows); },
           "path"_a, nb::sig("def write(self, path: str | os.PathLike[str]) -> None"),
-          "Write a label file, as CSV.")
-      .def("to_dataframe", label_frame, nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
-           "edge, from, to and label, as a table of pandas.");
+          "Write a label file, as CSV.");
+  bind_data_frame(bound, label_frame, "edge, from, to and label");
   module.def(
       "read_labels", [](nb::handle path) { return Labels{read_labels(path_of(path))}; }, "path"_a,
       nb::sig("def read_labels(path: str | os.PathLike[str]) -> Labels"), "Read a label file.");

@@ -29,7 +29,7 @@ Optimized optimize_graph(const PoseGraphFile& graph, nb::kwargs given) {
   keywords.take_fields(options);
   const RunKeywords run = keywords.take_run();
   keywords.finish();
-  auto found = without_gil(run, [&](const RunContext& context) {
+  auto found = without_gil(run, nb::find(graph), [&graph, options](const RunContext& context) {
     return slam::optimize(graph.graph, options, context);
   });
   OptimizeSummary summary = found;

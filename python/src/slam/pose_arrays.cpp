@@ -10,6 +10,9 @@ namespace {
 // A pose in the plane begins with three numbers in a row, as its constructor has them.
 static_assert(std::is_standard_layout_v<Pose2>);
 static_assert(sizeof(Pose2::Translation) == 2 * sizeof(double));
+// One in space ends with its seven numbers in a row.
+static_assert(std::is_standard_layout_v<Pose3>);
+static_assert(sizeof(Pose3) == 8 * sizeof(double));
 
 constexpr double kUnitTolerance = 1e-3;
 constexpr double kRounding = 1e-12;
@@ -87,14 +90,9 @@ PoseRows pose_rows(const Pose2* first, std::size_t count, std::size_t stride, nb
   return strided_rows(reinterpret_cast<const double*>(first), count, 3, stride, owner);
 }
 
-PoseRows pose_rows(const Pose3* first, std::size_t count, std::size_t stride, nb::handle) {
-  const std::size_t columns = kPoseColumns<Pose3>;
-  std::vector<double> values(count * columns);
-  const auto* const bytes = reinterpret_cast<const std::byte*>(first);
-  for (std::size_t k = 0; k < count; ++k) {
-    write_row(*reinterpret_cast<const Pose3*>(bytes + k * stride), values.data() + k * columns);
-  }
-  return give_rows(std::move(values), count, columns);
+PoseRows pose_rows(const Pose3* first, std::size_t count, std::size_t stride, nb::handle owner) {
+  const double* const begin = count == 0 ? nullptr : first->translation().data();
+  return strided_rows(begin, count, kPoseColumns<Pose3>, stride, owner);
 }
 
 template <class Pose>

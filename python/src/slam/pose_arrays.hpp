@@ -35,7 +35,7 @@ std::vector<Pose> poses_from(nb::handle value, const char* what);
 template <class Pose>
 std::vector<std::optional<Pose>> known_poses_from(nb::handle value, const char* what);
 
-/// Poses every `stride` bytes: in place where they are in the plane, a copy in space.
+/// Poses every `stride` bytes, in place.
 PoseRows pose_rows(const Pose2* first, std::size_t count, std::size_t stride, nb::handle owner);
 PoseRows pose_rows(const Pose3* first, std::size_t count, std::size_t stride, nb::handle owner);
 

@@ -184,7 +184,7 @@ nb::object edge_frame(nb::handle_t<PoseGraphFile> self) {
   const bool space = nb::cast<int>(self.attr("dimension")) == Pose3::kDim;
   constexpr std::array<const char*, 3> kPlane = {"x", "y", "theta"};
   constexpr std::array<const char*, 7> kSpace = {"x", "y", "z", "qx", "qy", "qz", "qw"};
-  nb::dict columns;
+  const nb::dict columns;
   columns["from"] = ends.attr("T")[0];
   columns["to"] = ends.attr("T")[1];
   const std::size_t count = space ? kSpace.size() : kPlane.size();
@@ -384,15 +384,11 @@ void bind_facts(nb::class_<PoseGraphFile>& bound) {
       .def("odometry_poses", chained,
            nb::sig("def odometry_poses(self) -> numpy.typing.NDArray[numpy.float64]"),
            "Poses by chaining odometry, n x 3 or n x 7.")
-      .def_prop_ro(
-          "report", [](const PoseGraphFile& self) { return report_of(self.report); },
-          nb::sig("def report(self) -> dict[str, object]"),
-          "What was noticed in the file that the graph was read from.")
       .def(
           "write", [](const PoseGraphFile& self, nb::handle path) { write(path, self); }, "path"_a,
-          nb::sig("def write(self, path: str | os.PathLike[str]) -> None"), "Write g2o.")
-      .def("to_dataframe", edge_frame, nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
-           "from, to and measurement of each edge, as a table of pandas.");
+          nb::sig("def write(self, path: str | os.PathLike[str]) -> None"), "Write g2o.");
+  bind_read_report(bound, "the graph");
+  bind_data_frame(bound, edge_frame, "from, to and measurement of each edge");
 }
 
 }  // namespace

@@ -65,11 +65,12 @@ Pruned prune_graph(nb::handle_t<PoseGraphFile> graph, const std::string& method,
   require_own(keywords, pruned.options);
   const auto& input = graph_of(pruned).graph;
   pruned.roles = roles_of(input, trusted);
-  pruned.result = without_gil(run, [&](const RunContext& context) {
-    return std::visit(
-        [&](const auto& own) { return slam::prune(own, pruned.roles, pruned.options, context); },
-        input);
-  });
+  pruned.result = without_gil(
+      run, pruned.graph,
+      [&input, roles = pruned.roles, options = pruned.options](const RunContext& context) {
+        return std::visit(
+            [&](const auto& own) { return slam::prune(own, roles, options, context); }, input);
+      });
   return pruned;
 }
 
@@ -95,6 +96,17 @@ nb::dict methods_of() {
     all[std::string(method_name(method)).c_str()] = options;
   }
   return all;
+}
+
+nb::dict keywords_of_datta2016() {
+  const slam::HeatPruneOptions options = slam::datta2016();
+  nb::dict keywords;
+  keywords["method"] = python_value(std::string(options.method()));
+  visit_fields(options, [&keywords](std::string_view name, const auto& value, std::string_view,
+                                    const auto&...) {
+    keywords[std::string(name).c_str()] = python_value(value);
+  });
+  return keywords;
 }
 
 // Every option of every method once. Its default is the method's own.
@@ -146,15 +158,9 @@ void bind_result(nb::class_<Pruned>& bound) {
       .def("_repr_html_", notebook_page)
       .def("pruned", without_false, nb::kw_only(), "keep_ambiguous"_a = false,
            "The graph without the loops that are pruned and, unless keep_ambiguous, without those "
-           "that are ambiguous. Poses are as they were: optimize() finds them.")
-      .def(
-          "to_dataframe",
-          [](const Pruned& self) {
-            const nb::object verdicts = nb::cast(verdicts_of(self));
-            return data_frame(columns(nb::cast<const Verdicts&>(verdicts), verdicts));
-          },
-          nb::sig("def to_dataframe(self) -> pandas.DataFrame"),
-          "The verdicts, as a table of pandas.");
+           "that are ambiguous. Poses are as they were: optimize() finds them.");
+  bind_data_frame(
+      bound, [](const Pruned& self) { return data_frame(verdicts_of(self)); }, "The verdicts");
 }
 
 }  // namespace
@@ -167,6 +173,9 @@ void bind_prune(nb::module_& module) {
   module.def("prune_methods", methods_of,
              nb::sig("def prune_methods() -> dict[str, dict[str, str]]"),
              "The methods of prune(), the default first, each with its options and their meaning.");
+  module.def("datta2016", keywords_of_datta2016,
+             nb::sig("def datta2016() -> dict[str, typing.Any]"),
+             "The keywords that make prune() the heat method as Datta et al. (2016) state it.");
   const std::string method(method_name(PruneOptions()));
   const KeywordText trusted = {
       "trusted", "numpy.typing.ArrayLike | None", "None",

@@ -23,7 +23,7 @@ std::string page_of_poses(const slam::PoseGraph<Pose>& graph, const Pruned& prun
   apps::PruneRun<Pose> run{
       title_of(file.report.path, "pose graph"), {}, std::move(truth), slam::robots_of(file)};
   run.options.prune = pruned.options;
-  return without_gil({}, [&](const RunContext& context) {
+  return without_gil({}, nb::find(pruned), [&graph, &pruned, run](const RunContext& context) {
     slam::PipelineResult<slam::PoseGraph<Pose>> result{
         pruned.roles, pruned.result, slam::apply_verdicts(graph, pruned.result.verdicts), {}};
     auto solved = slam::optimize(result.pruned, *run.options.optimize, context);

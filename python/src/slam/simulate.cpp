@@ -36,7 +36,8 @@ void define_world(nb::module_& module, const std::string& name, const std::strin
            keywords.take_fields(options);
            keywords.take_into("seed", options.seed);
            keywords.finish();
-           auto world = without_gil({}, [&](const RunContext&) { return make(options); });
+           auto world = without_gil({}, nb::none(),
+                                    [make, options](const RunContext&) { return make(options); });
            return nb::make_tuple(PoseGraphFile{std::move(world.graph), {}, {}, {}},
                                  give_poses(world.truth));
          });
@@ -59,9 +60,10 @@ nb::tuple corrupt_graph(const PoseGraphFile& graph, nb::handle truth, nb::kwargs
   keywords.finish();
   return std::visit(
       [&](const auto& own) {
-        const auto poses = true_poses(own, truth);
-        auto made =
-            without_gil({}, [&](const RunContext&) { return slam::corrupt(own, poses, options); });
+        auto made = without_gil({}, nb::find(graph),
+                                [&own, poses = true_poses(own, truth), options](const RunContext&) {
+                                  return slam::corrupt(own, poses, options);
+                                });
         return nb::make_tuple(with_graph(graph, std::move(made.graph)),
                               Labels{std::move(made.labels)});
       },
@@ -73,7 +75,7 @@ PoseGraphFile densify_graph(const PoseGraphFile& graph, nb::kwargs given) {
   slam::DensifyOptions options;
   keywords.take_fields(options);
   keywords.finish();
-  auto dense = without_gil({}, [&](const RunContext&) -> slam::AnyPoseGraph {
+  auto dense = without_gil({}, nb::find(graph), [&graph, options](const RunContext&) {
     return std::visit(
         [&options](const auto& own) -> slam::AnyPoseGraph {
           return slam::densify(own, slam::edge_roles(own), options);

@@ -99,7 +99,7 @@ void doubt_information(const PoseGraph<Pose>& graph, std::vector<Doubt>& doubts)
 
 template <class Pose>
 std::vector<Doubt> diagnose(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
-  auto doubts = doubt_measurements(graph, roles);
+  auto doubts = detail::doubt_measurements(graph, roles);
   doubt_order(graph, roles, doubts);
   doubt_information(graph, doubts);
   return doubts;

@@ -14,7 +14,7 @@
 #include "isotherm/slam/graph/information.hpp"
 #include "isotherm/slam/graph/odometry.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 namespace {
 
 constexpr std::size_t kMostLoops = 300;  // those over the shortest stretches of odometry
@@ -139,4 +139,4 @@ std::vector<Doubt> doubt_measurements(const PoseGraph<Pose>& graph, const EdgeRo
 template std::vector<Doubt> doubt_measurements(const PoseGraph<Pose2>&, const EdgeRoles&);
 template std::vector<Doubt> doubt_measurements(const PoseGraph<Pose3>&, const EdgeRoles&);
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

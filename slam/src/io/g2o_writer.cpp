@@ -14,8 +14,8 @@ constexpr std::string_view kEdgeTag = Pose::kDim == 2 ? "EDGE_SE2" : "EDGE_SE3:Q
 
 template <class Pose>
 void write_g2o_records(OutputFile& file, const PoseGraph<Pose>& graph) {
-  check_poses(graph);
-  RecordWriter line(file);
+  detail::check_poses(graph);
+  detail::RecordWriter line(file);
   for (std::size_t v = 0; v < graph.poses.size(); ++v) {
     line.tag(kVertexTag<Pose>).id(graph.ids[v]).pose(graph.poses[v]).end();
   }

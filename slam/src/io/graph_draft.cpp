@@ -11,7 +11,7 @@
 #include "isotherm/slam/graph/repeats.hpp"
 #include "isotherm/spectral/graph/weighted_graph.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 namespace {
 
 template <class Pose>
@@ -358,4 +358,4 @@ PoseGraphFile finish(FileDraft draft, const ReadOptions& options) {
   return file;
 }
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

@@ -9,7 +9,7 @@
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 
 /// What the lines of files say, before ids become positions: a file may name a
 /// vertex in an edge before, or without, its own line.
@@ -66,4 +66,4 @@ void append(FileDraft& draft, FileDraft next);
 ///   under `options.strict`.
 PoseGraphFile finish(FileDraft draft, const ReadOptions& options);
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

@@ -5,7 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 
 /// Whether a symmetric matrix is positive semi-definite up to rounding.
 ///
@@ -43,4 +43,4 @@ double log_determinant(const Matrix& m) {
   return 2.0 * cholesky.matrixLLT().diagonal().array().log().sum();
 }
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

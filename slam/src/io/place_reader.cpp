@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 namespace {
 
 // A recognised place says that two poses are close, not how they look at each
@@ -131,4 +131,4 @@ class PlaceReader {
 
 PoseGraphFile read_places(TextReader& text) { return PlaceReader(text).run(); }
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

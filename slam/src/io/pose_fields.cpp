@@ -9,7 +9,7 @@
 
 #include "isotherm/base/text_writer.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 namespace {
 
 // Six significant digits, as most programs print, put a norm or an angle off by
@@ -145,4 +145,4 @@ void PoseFields::finish() {
   if (rounded_angles_ > 0) report_.notes["angle rounded"] += rounded_angles_;
 }
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

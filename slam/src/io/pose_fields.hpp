@@ -4,7 +4,7 @@
 #include "isotherm/base/text_reader.hpp"
 #include "isotherm/slam/graph/pose.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 
 /// Reads poses from the fields of a line and repairs what rounding did to them.
 ///
@@ -45,4 +45,4 @@ class PoseFields {
   std::uint64_t rounded_matrices_ = 0;
 };
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

@@ -40,8 +40,8 @@ PoseGraphFile read_pose_graph(TextReader& reader, const ReadOptions& options) {
 
 PoseGraphFile read_pose_graph(TextReader& reader, FileFormat format, const ReadOptions& options) {
   options.validate();
-  if (format == FileFormat::places) return read_places(reader);
-  return finish(read_draft(reader, format, options), options);
+  if (format == FileFormat::places) return detail::read_places(reader);
+  return finish(detail::read_draft(reader, format, options), options);
 }
 
 PoseGraphFile read_pose_graph(const std::string& path, const ReadOptions& options) {
@@ -53,10 +53,10 @@ PoseGraphFile read_pose_graphs(const std::vector<std::string>& paths, const Read
   options.validate();
   if (paths.empty()) throw InvalidArgument("paths", "must name a file");
   if (paths.size() == 1) return read_pose_graph(paths.front(), options);
-  std::optional<FileDraft> all;
+  std::optional<detail::FileDraft> all;
   for (const auto& path : paths) {
     TextReader reader(path);
-    auto next = read_draft(reader, format_of_part(reader), options);
+    auto next = detail::read_draft(reader, format_of_part(reader), options);
     if (all) {
       append(*all, std::move(next));
     } else {

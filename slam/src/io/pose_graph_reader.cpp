@@ -12,7 +12,7 @@
 #include "io/unused_records.hpp"
 #include "isotherm/slam/io/file_format.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 namespace {
 
 enum class Tag {
@@ -361,4 +361,4 @@ FileDraft read_draft(TextReader& reader, FileFormat format, const ReadOptions& o
   return PoseGraphReader(reader, format, options).run();
 }
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

@@ -8,7 +8,7 @@
 #include "isotherm/base/text_writer.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 
 /// @throws InvalidArgument unless there are no poses or one an id.
 template <class Pose>
@@ -65,4 +65,4 @@ class RecordWriter {
   std::string line_;
 };
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

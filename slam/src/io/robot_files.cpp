@@ -6,7 +6,7 @@
 
 #include "graph/find_root.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 namespace {
 
 // Vertices without a line belong to the file that joins them to the next number, to their
@@ -69,4 +69,4 @@ template void tell_robots_apart(PoseGraph<Pose2>&, std::vector<std::uint32_t>,
 template void tell_robots_apart(PoseGraph<Pose3>&, std::vector<std::uint32_t>,
                                 const std::vector<std::size_t>&);
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

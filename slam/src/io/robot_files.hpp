@@ -7,7 +7,7 @@
 
 #include "isotherm/slam/graph/pose_graph.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 
 inline constexpr std::uint32_t kNoFile = std::numeric_limits<std::uint32_t>::max();
 
@@ -22,4 +22,4 @@ template <class Pose>
 void tell_robots_apart(PoseGraph<Pose>& graph, std::vector<std::uint32_t> owners,
                        const std::vector<std::size_t>& ends_of_files);
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

@@ -16,26 +16,28 @@ Eigen::Vector3d roll_pitch_yaw(const Eigen::Matrix3d& r) {
   return {std::atan2(r(2, 1), r(2, 2)), pitch, std::atan2(r(1, 0), r(0, 0))};
 }
 
-void write_record_pose(RecordWriter& line, const Pose2& pose) { line.pose(pose); }
+void write_record_pose(detail::RecordWriter& line, const Pose2& pose) { line.pose(pose); }
 
-void write_record_pose(RecordWriter& line, const Pose3& pose) {
+void write_record_pose(detail::RecordWriter& line, const Pose3& pose) {
   for (const double value : pose.translation()) line.number(value);
   for (const double value : roll_pitch_yaw(pose.rotation_matrix())) line.number(value);
 }
 
 // TORO's own order in the plane; by rows in space.
-void write_information(RecordWriter& line, const Pose2::Matrix& m) {
+void write_information(detail::RecordWriter& line, const Pose2::Matrix& m) {
   for (const double value : {m(0, 0), m(0, 1), m(1, 1), m(2, 2), m(0, 2), m(1, 2)}) {
     line.number(value);
   }
 }
 
-void write_information(RecordWriter& line, const Pose3::Matrix& m) { line.upper_triangle(m); }
+void write_information(detail::RecordWriter& line, const Pose3::Matrix& m) {
+  line.upper_triangle(m);
+}
 
 template <class Pose>
 void write_toro_records(OutputFile& file, const PoseGraph<Pose>& graph) {
-  check_poses(graph);
-  RecordWriter line(file);
+  detail::check_poses(graph);
+  detail::RecordWriter line(file);
   for (std::size_t v = 0; v < graph.poses.size(); ++v) {
     line.tag(Pose::kDim == 2 ? "VERTEX2" : "VERTEX3").id(graph.ids[v]);
     write_record_pose(line, graph.poses[v]);

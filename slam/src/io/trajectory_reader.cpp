@@ -129,7 +129,7 @@ class TrajectoryReader {
   TextReader& text_;
   FileFormat format_;
   ReadReport& report_;
-  PoseFields fields_;
+  detail::PoseFields fields_;
   std::uint64_t rows_ = 0;
   bool stamped_ = false;
 };

@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 namespace {
 
 constexpr std::array<std::pair<std::string_view, std::string_view>, 22> kUnused = {{
@@ -40,4 +40,4 @@ std::string_view unused_record(std::string_view tag) {
   return {};
 }
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

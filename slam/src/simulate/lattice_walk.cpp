@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 namespace {
 
 // Quarter turns to the left and right (about the third axis), down and up (about
@@ -48,4 +48,4 @@ std::vector<LatticeStop> lattice_walk(std::int64_t stops, const LatticeStreets& 
   return walk;
 }
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

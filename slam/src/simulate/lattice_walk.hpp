@@ -7,7 +7,7 @@
 
 #include "isotherm/base/random.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 
 /// A cell of the integer lattice and the frame of a robot that is about to leave
 /// it along its first axis.
@@ -28,4 +28,4 @@ struct LatticeStreets {
 std::vector<LatticeStop> lattice_walk(std::int64_t stops, const LatticeStreets& streets,
                                       Random& random);
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

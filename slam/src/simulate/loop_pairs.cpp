@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 namespace {
 
 // A loop closure joins poses at least this many steps apart.
@@ -89,4 +89,4 @@ std::vector<LoopPair> loop_pairs(const std::vector<Eigen::Vector3d>& places, std
   return pairs;
 }
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

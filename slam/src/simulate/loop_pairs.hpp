@@ -7,7 +7,7 @@
 #include "isotherm/base/random.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 
 struct LoopPair {
   Index from = 0;
@@ -20,4 +20,4 @@ struct LoopPair {
 std::vector<LoopPair> loop_pairs(const std::vector<Eigen::Vector3d>& places, std::int64_t wanted,
                                  double radius, Random& random);
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

@@ -5,7 +5,7 @@
 #include "isotherm/slam/graph/odometry.hpp"
 #include "simulate/loop_pairs.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 namespace {
 
 template <class Pose>
@@ -87,8 +87,6 @@ std::vector<Eigen::Vector3d> places(const std::vector<Pose>& path) {
 
 }  // namespace
 
-void MeasurementOptions::validate() const { require_fields_in_range(*this); }
-
 template <class Pose>
 Simulation<Pose> measure_path(std::vector<Pose> path, const MeasurementOptions& options,
                               Random& random) {
@@ -121,5 +119,11 @@ Simulation<Pose> measure_path(std::vector<Pose> path, const MeasurementOptions& 
 
 template Simulation<Pose2> measure_path(std::vector<Pose2>, const MeasurementOptions&, Random&);
 template Simulation<Pose3> measure_path(std::vector<Pose3>, const MeasurementOptions&, Random&);
+
+}  // namespace isotherm::slam::detail
+
+namespace isotherm::slam {
+
+void MeasurementOptions::validate() const { require_fields_in_range(*this); }
 
 }  // namespace isotherm::slam

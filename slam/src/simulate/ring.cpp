@@ -21,7 +21,7 @@ Simulation<Pose2> simulate_ring(const RingOptions& options) {
                       wrap_angle(angle + 0.5 * std::numbers::pi));
   }
   Random random(options.seed);
-  return measure_path(std::move(path), options.measurements, random);
+  return detail::measure_path(std::move(path), options.measurements, random);
 }
 
 }  // namespace isotherm::slam

@@ -50,7 +50,7 @@ Simulation<Pose3> simulate_sphere(const SphereOptions& options) {
     path.push_back(line.at((static_cast<double>(k) + 0.5) / static_cast<double>(options.poses)));
   }
   Random random(options.seed);
-  return measure_path(std::move(path), options.measurements, random);
+  return detail::measure_path(std::move(path), options.measurements, random);
 }
 
 }  // namespace isotherm::slam

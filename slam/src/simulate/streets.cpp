@@ -15,12 +15,12 @@ std::int64_t half_width(double side, std::int64_t block) {
   return block * std::max<std::int64_t>(1, blocks);
 }
 
-Pose2 planar(const LatticeStop& stop) {
+Pose2 planar(const detail::LatticeStop& stop) {
   const Eigen::Vector3d heading = stop.frame.col(0).cast<double>();
   return {stop.cell.head<2>().cast<double>(), std::atan2(heading.y(), heading.x())};
 }
 
-Pose3 spatial(const LatticeStop& stop) {
+Pose3 spatial(const detail::LatticeStop& stop) {
   const Eigen::Matrix3d rotation = stop.frame.cast<double>();
   return {stop.cell.cast<double>(), Eigen::Quaterniond(rotation).normalized()};
 }
@@ -39,12 +39,12 @@ Simulation<Pose2> simulate_city(const CityOptions& options) {
   options.validate();
   Random random(options.seed);
   const double side = std::sqrt(static_cast<double>(options.poses * options.block));
-  const auto walk = lattice_walk(
+  const auto walk = detail::lattice_walk(
       options.poses, {.block = options.block, .limit = half_width(side, options.block)}, random);
   std::vector<Pose2> path;
   path.reserve(walk.size());
   for (const auto& stop : walk) path.push_back(planar(stop));
-  return measure_path(std::move(path), options.measurements, random);
+  return detail::measure_path(std::move(path), options.measurements, random);
 }
 
 Simulation<Pose3> simulate_grid3d(const Grid3dOptions& options) {
@@ -52,14 +52,14 @@ Simulation<Pose3> simulate_grid3d(const Grid3dOptions& options) {
   Random random(options.seed);
   const auto block = static_cast<double>(options.block);
   const double side = std::cbrt(2.0 / 3.0 * static_cast<double>(options.poses) * block * block);
-  const auto walk = lattice_walk(
+  const auto walk = detail::lattice_walk(
       options.poses,
       {.block = options.block, .limit = half_width(side, options.block), .up_and_down = true},
       random);
   std::vector<Pose3> path;
   path.reserve(walk.size());
   for (const auto& stop : walk) path.push_back(spatial(stop));
-  return measure_path(std::move(path), options.measurements, random);
+  return detail::measure_path(std::move(path), options.measurements, random);
 }
 
 }  // namespace isotherm::slam

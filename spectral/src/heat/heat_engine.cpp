@@ -25,6 +25,19 @@ bool any_open(const HeatTable& table, const HeatGoal& goal, std::size_t scale) {
   return false;
 }
 
+/// Whether a value is still open at `scale` that would not be if its bracket were narrower by
+/// `saved`, times the squared norm of its vector.
+bool any_within_reach(std::span<const HeatTarget> targets, const HeatTable& table,
+                      const HeatGoal& goal, std::size_t scale, double saved) {
+  const std::size_t scale_count = goal.scales.size();
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    const CertifiedValue& value = table.values[k * scale_count + scale];
+    if (goal.reached(value, scale)) continue;
+    if (value.width() - saved * targets[k].squared_norm() <= goal.tolerance) return true;
+  }
+  return false;
+}
+
 /// What both brackets allow. Both hold, so they meet; should rounding have been
 /// worse than allowed for, the proven one stands.
 CertifiedValue intersection(const CertifiedValue& proven, const CertifiedValue& other) {
@@ -161,16 +174,34 @@ void HeatEngine::run_lanczos(std::span<const HeatTarget> targets, const HeatGoal
 }
 
 /// Brings every target that `goal` does not accept yet at the given scales
-/// there, narrowing the brackets that Lanczos left.
+/// there, narrowing the brackets that Lanczos left. The approximation is chosen before it is
+/// known how much of the tolerance rounding takes: where that turns out to be more than was
+/// left for it, the next one leaves more.
 void HeatEngine::run_rational(std::span<const HeatTarget> targets, const HeatGoal& goal,
                               std::span<const std::size_t> scales, Rational& rational,
                               HeatTable& table) const {
-  if (scales.empty()) return;
+  std::vector<std::size_t> left(scales.begin(), scales.end());
+  const RationalExponential* approximation = &rational.approximation();
+  while (!left.empty()) {
+    narrow(targets, goal, left, *approximation, rational, table);
+    const RationalExponential& finer = finer_than(*approximation);
+    const double saved = 2.0 * (approximation->error - finer.error);
+    std::erase_if(left, [&](std::size_t scale) {
+      return !any_within_reach(targets, table, goal, scale, saved);
+    });
+    approximation = &finer;
+  }
+}
+
+void HeatEngine::narrow(std::span<const HeatTarget> targets, const HeatGoal& goal,
+                        std::span<const std::size_t> scales,
+                        const RationalExponential& approximation, Rational& rational,
+                        HeatTable& table) const {
   const auto scale_count = goal.scales.size();
   std::vector<double> times;
   for (const std::size_t s : scales) times.push_back(goal.scales[s]);
   std::vector<CertifiedValue> values(targets.size() * scales.size());
-  rational_heat(rational.matrix(), rational.queries(), targets, rational.approximation(), times,
+  rational_heat(rational.matrix(), rational.queries(), targets, approximation, times,
                 options_.threads, options_.progress, values);
   for (std::size_t k = 0; k < targets.size(); ++k) {
     if (targets[k].trivial()) continue;

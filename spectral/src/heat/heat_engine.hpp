@@ -14,6 +14,8 @@
 
 namespace isotherm::spectral::detail {
 
+struct RationalExponential;
+
 /// Values of quadratic forms of exp(-tL), row-major: targets x scales.
 struct HeatTable {
   std::vector<CertifiedValue> values;
@@ -46,6 +48,9 @@ class HeatEngine {
   void run_rational(std::span<const HeatTarget> targets, const HeatGoal& goal,
                     std::span<const std::size_t> scales, Rational& rational,
                     HeatTable& table) const;
+  void narrow(std::span<const HeatTarget> targets, const HeatGoal& goal,
+              std::span<const std::size_t> scales, const RationalExponential& approximation,
+              Rational& rational, HeatTable& table) const;
 
   const SparseMatrix& laplacian_;
   const HeatDistanceOptions& options_;

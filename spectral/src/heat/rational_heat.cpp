@@ -111,6 +111,10 @@ const RationalExponential& rational_exponential_for(double tolerance) {
   return kRationalExponentials.back();
 }
 
+const RationalExponential& finer_than(const RationalExponential& rational) {
+  return &rational == &kRationalExponentials.back() ? rational : *(&rational + 1);
+}
+
 double rational_cost(const FrontalMatrix& matrix, const RationalExponential& rational) {
   // Fitted to measurements on pose graphs and meshes of 10^4 to 10^6 vertices.
   constexpr double kEntry = 100.0;

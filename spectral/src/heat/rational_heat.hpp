@@ -14,6 +14,9 @@ namespace isotherm::spectral::detail {
 /// bracket narrower than `tolerance`; the most accurate one if none does.
 const RationalExponential& rational_exponential_for(double tolerance);
 
+/// The one that is next in accuracy; the same if there is none.
+const RationalExponential& finer_than(const RationalExponential& rational);
+
 /// Rough time of all factorisations and inversions that one scale takes, in
 /// nanoseconds on one thread. Counted, not measured: the same on every machine.
 double rational_cost(const FrontalMatrix& matrix, const RationalExponential& rational);

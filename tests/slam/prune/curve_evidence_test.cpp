@@ -233,6 +233,32 @@ TEST(PruneByCurves, PrunesTheLoopsBetweenDifferentPlaces) {
   EXPECT_TRUE(result.warnings.empty());
 }
 
+// The same file in millimetres. Lengths that were given for metres are not the same then.
+TEST(PruneByCurves, TheUnitOfTheFilePlaysNoPart) {
+  const auto in_metres = with_loops(two_laps());
+  auto in_millimetres = in_metres;
+  for (auto& edge : in_millimetres.constraints) {
+    const Pose2& step = edge.T_from_to;
+    edge.T_from_to = Pose2(1000.0 * step.translation(), step.angle());
+  }
+  const auto same = [&](const CurveEvidenceOptions& metres,
+                        const CurveEvidenceOptions& millimetres) {
+    const auto expected = prune(in_metres, CurvePruneOptions{metres}).verdicts;
+    const auto found = prune(in_millimetres, CurvePruneOptions{millimetres}).verdicts;
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      EXPECT_EQ(found[k].verdict, expected[k].verdict);
+      EXPECT_NEAR(found[k].score, expected[k].score, 1e-9);
+    }
+  };
+  same({.comparison = CurveComparison::lap_line}, {.comparison = CurveComparison::lap_line});
+  CurveEvidenceOptions scaled;
+  for (double& window : scaled.windows) window *= 1000.0;
+  scaled.step *= 1000.0;
+  scaled.cap *= 1000.0;
+  same({}, scaled);
+}
+
 TEST(PruneByCurves, SaysWhereItKnowsNothing) {
   std::vector<Pose2> poses;
   for (int k = 0; k < 5; ++k) poses.emplace_back(k, 0.0, 0.0);

@@ -97,6 +97,9 @@ class Pose3 {
   static Matrix right_jacobian_inverse(const Tangent& xi);
 
  private:
+  // A quaternion is aligned to 16 bytes or more. The gap stands here and not behind the
+  // translation, so that all seven numbers are in a row, as others have them.
+  [[maybe_unused]] double gap_ = 0.0;
   Translation translation_ = Translation::Zero();
   Eigen::Quaterniond rotation_ = Eigen::Quaterniond::Identity();
 };
