@@ -78,9 +78,10 @@ std::vector<double> mean_log_odds(detail::Climb<Pose>& climb,
   return log_true;
 }
 
-Verdict verdict_of(bool accepted, double log_odds, double decisive, bool few) {
+// Without `refutable` nothing can speak against the loop.
+Verdict verdict_of(bool accepted, double log_odds, double decisive, bool refutable) {
   if (accepted && log_odds > decisive) return Verdict::keep;
-  return log_odds < -decisive && !few ? Verdict::prune : Verdict::ambiguous;
+  return log_odds < -decisive && refutable ? Verdict::prune : Verdict::ambiguous;
 }
 
 std::string stage_of(bool accepted, const detail::Standing& standing) {
@@ -95,12 +96,13 @@ void report(detail::Climb<Pose>& climb, const std::vector<Explanation<Pose>>& fo
   std::vector<detail::Standing> standings;
   const auto log_odds = mean_log_odds(climb, found, standings);
   const double decisive = detail::log_odds_of(1.0 - significance);
-  const bool few = standings.size() < kFewLoops;
+  const bool many = standings.size() >= kFewLoops;
   for (std::size_t k = 0; k < standings.size(); ++k) {
     auto& verdict = result.verdicts[k];
     verdict.score = -log_odds[k];
     verdict.threshold = decisive;
-    verdict.verdict = verdict_of(best.accepted[k], log_odds[k], decisive, few);
+    verdict.verdict =
+        verdict_of(best.accepted[k], log_odds[k], decisive, many && standings[k].connected);
     verdict.stage = stage_of(best.accepted[k], standings[k]);
     result.details.push_back({.probability = 1.0 / (1.0 + std::exp(-log_odds[k])),
                               .evidence = standings[k].evidence,
