@@ -12,7 +12,9 @@ namespace {
 // Nats by which an explanation must be better to go on, and nats a loop for a lesson to matter.
 constexpr double kBetter = 0.1;
 constexpr double kTelling = 1e-3;
-constexpr int kPatience = 8;  // moves in a row that may find nothing better
+// Moves in a row that may find nothing better, or nothing that would lead in as many to the highest
+// peak of earlier climbs.
+constexpr int kPatience = 8;
 constexpr std::size_t kMoreTelling =
     2;  // times as many loops have more to tell of how accurate they are
 
@@ -33,6 +35,7 @@ Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
     grow();
   } while (best_.evidence > before + kBetter);
   peaks_.insert(best_.accepted);
+  summit_ = std::max(summit_, best_.evidence);
   return std::move(best_);
 }
 
@@ -76,8 +79,11 @@ void Climb<Pose>::grow() {
   for (int round = 0; round < options_.max_rounds; ++round) {
     tell_progress();
     const double before = best_.evidence;
+    const std::size_t had = accepted_count();
     if (!move()) return;
-    vain = best_.evidence > before ? 0 : vain + 1;
+    const double enough = std::max(summit_ - best_.evidence, 0.0) / kPatience;
+    const bool grows = 2 * accepted_count() >= 3 * had;
+    vain = grows || best_.evidence - before > enough ? 0 : vain + 1;
     if (vain == kPatience) return;
   }
   settled_ = false;

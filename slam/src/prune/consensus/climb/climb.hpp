@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <set>
 #include <vector>
 
@@ -63,8 +64,9 @@ class Climb {
   Explanation<Pose> best_;
   std::vector<double> run_density_;    // log p(z | the loop before in its run)
   std::set<std::vector<bool>> peaks_;  // loops with which climbs ended
-  std::vector<bool> dropped_;          // since the climb last rose; not tried again
-  std::size_t learnt_from_ = 0;        // loops, at the last lesson
+  double summit_ = -std::numeric_limits<double>::infinity();  // the highest peak
+  std::vector<bool> dropped_;    // since the climb last rose; not tried again
+  std::size_t learnt_from_ = 0;  // loops, at the last lesson
   std::vector<ConsensusMove> moves_;
   bool settled_ = true;
 };
