@@ -58,9 +58,6 @@ ConsensusResult consensus(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                           const ConsensusOptions& options, const RunContext& run) {
   options.validate();
   auto result = detail::judge_by_evidence(graph, roles, options, run);
-  for (std::size_t k = 0; k < result.details.size(); ++k) {
-    result.verdicts[k].probability = result.details[k].probability;
-  }
   add_conflicts(graph, roles, options.significance, result);
   return result;
 }

@@ -86,7 +86,7 @@ Verdict verdict_of(bool accepted, double log_odds, double decisive, bool refutab
 
 std::string stage_of(bool accepted, const detail::Standing& standing) {
   if (accepted) return "accepted";
-  return standing.connected ? "rejected" : "unconnected";
+  return standing.connected() ? "rejected" : "unconnected";
 }
 
 template <class Pose>
@@ -102,12 +102,13 @@ void report(detail::Climb<Pose>& climb, const std::vector<Explanation<Pose>>& fo
     verdict.score = -log_odds[k];
     verdict.threshold = decisive;
     verdict.verdict =
-        verdict_of(best.accepted[k], log_odds[k], decisive, many && standings[k].connected);
+        verdict_of(best.accepted[k], log_odds[k], decisive, many && standings[k].connected());
     verdict.stage = stage_of(best.accepted[k], standings[k]);
-    result.details.push_back({.probability = 1.0 / (1.0 + std::exp(-log_odds[k])),
+    verdict.probability = 1.0 / (1.0 + std::exp(-log_odds[k]));
+    result.details.push_back({.probability = verdict.probability,
                               .evidence = standings[k].evidence,
                               .chi2 = standings[k].chi2,
-                              .connected = standings[k].connected});
+                              .connected = standings[k].connected()});
   }
   result.odometry_scale = best.scale.odometry;
   result.loop_scale = best.scale.loops;

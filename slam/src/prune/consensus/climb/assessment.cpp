@@ -136,7 +136,7 @@ void Assessment<Pose>::weigh(Explanation<Pose>& now) {
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
     const auto loop = static_cast<Index>(k);
     if (!now.accepted[k]) standings_[k] = other_standing(now, loop, false);
-    const bool hopeful = standings_[k].connected && standings_[k].evidence > -kHopeless;
+    const bool hopeful = standings_[k].connected() && standings_[k].evidence > -kHopeless;
     if (now.accepted[k] || hopeful) loops.push_back(loop);
   }
   const auto covariances = estimate_.relative_covariances(loops);
@@ -183,16 +183,16 @@ Standing Assessment<Pose>::accepted_standing(const Explanation<Pose>& now, Index
   const auto gain = loop_gain<Pose>(prediction, mixture_, objective_.scale_deviation(others));
   // Alone it would join parts that lie anywhere on the map.
   const double density = std::max(gain.log_density, -objective_.log_volume() - 0.5 * gain.chi2);
-  return {.connected = true, .chi2 = gain.chi2, .evidence = density - log_alternative(loop)};
+  return {.chi2 = gain.chi2, .evidence = density - log_alternative(loop)};
 }
 
 template <class Pose>
 Standing Assessment<Pose>::other_standing(const Explanation<Pose>& now, Index loop,
                                           bool solved) const {
   const auto& link = graph_.reduced.loops[loop];
-  Standing standing{.parts = estimate_.parts(link), .connected = estimate_.connected(link)};
+  Standing standing{.parts = estimate_.parts(link)};
   double density = -objective_.log_volume();
-  if (standing.connected) {
+  if (standing.connected()) {
     auto prediction = predict<Pose>(estimate_.residual(link), covariances_[loop], link.covariance);
     if (!solved) prediction = at_best<Pose>(prediction, mixture_.scale);
     const auto gain =

@@ -15,8 +15,8 @@ constexpr double kTelling = 1e-3;
 // Moves in a row that may find nothing better, or nothing that would lead in as many to the highest
 // peak of earlier climbs.
 constexpr int kPatience = 8;
-constexpr std::size_t kMoreTelling =
-    2;  // times as many loops have more to tell of how accurate they are
+// Times as many loops have more to tell of how accurate they are.
+constexpr std::size_t kMoreTelling = 2;
 
 }  // namespace
 
@@ -217,14 +217,13 @@ template <class Pose>
 void Climb<Pose>::note(std::size_t accepted, std::size_t dropped) {
   moves_.push_back({.accepted = static_cast<std::int64_t>(accepted),
                     .dropped = static_cast<std::int64_t>(dropped),
-                    .in_force = std::ranges::count(now_.accepted, true)});
+                    .in_force = static_cast<std::int64_t>(accepted_count())});
 }
 
 template <class Pose>
 void Climb<Pose>::tell_progress() const {
   if (!progress_) return;
-  const auto kept = static_cast<std::uint64_t>(std::ranges::count(now_.accepted, true));
-  if (!progress_({"consensus", kept, now_.accepted.size()})) throw Cancelled();
+  if (!progress_({"consensus", accepted_count(), now_.accepted.size()})) throw Cancelled();
 }
 
 template class Climb<Pose2>;

@@ -19,12 +19,18 @@ constexpr double kFalseShare = 1e-3;
 constexpr std::size_t kGrowth = 3;
 constexpr std::size_t kFew = 10;  // loops, that tell nothing of it
 
+// Parents of a forest for find_root().
+std::vector<Index> each_by_itself(std::size_t count) {
+  std::vector<Index> parent(count);
+  std::iota(parent.begin(), parent.end(), 0);
+  return parent;
+}
+
 template <class Pose>
 std::vector<std::vector<Index>> runs_of(const Runs<Pose>& runs, const std::vector<bool>& open,
                                         const std::vector<double>& run_density,
                                         const std::function<double(Index)>& alternative) {
-  std::vector<Index> parent(open.size());
-  std::iota(parent.begin(), parent.end(), 0);
+  std::vector<Index> parent = each_by_itself(open.size());
   for (std::size_t k = 0; k < open.size(); ++k) {
     const auto loop = static_cast<Index>(k);
     const Index before = runs.before(loop);
@@ -48,9 +54,7 @@ std::vector<Index> numbered_parts(const std::vector<Group>& groups) {
   for (const Group& group : groups) {
     count = std::max({count, group.parts.first + 1, group.parts.second + 1});
   }
-  std::vector<Index> parent(count);
-  std::iota(parent.begin(), parent.end(), 0);
-  return parent;
+  return each_by_itself(static_cast<std::size_t>(count));
 }
 
 }  // namespace
@@ -74,7 +78,7 @@ std::vector<Group> gaining_groups(const Runs<Pose>& runs, const std::vector<bool
       gain += evidence;
     }
     if (gain > 0.0) {
-      gaining.push_back({std::move(loops), gain, standings[seed].connected, standings[seed].parts});
+      gaining.push_back({std::move(loops), gain, standings[seed].parts});
     }
   }
   return gaining;
@@ -87,11 +91,11 @@ Group most_certain(std::vector<Group> groups, std::size_t accepted) {
   double expected_false = 0.0;
   const double most_false =
       std::max(kMostExpectedFalse, kFalseShare * static_cast<double>(accepted));
-  for (const auto& [members, gain, connected, parts] : groups) {
+  for (const auto& [members, gain, parts] : groups) {
     expected_false += 1.0 / (1.0 + std::exp(gain));
     const bool many = all.loops.size() + members.size() > kGrowth * std::max(accepted, kFew);
     if (!all.loops.empty() && (many || expected_false > most_false)) break;
-    if (!connected) {
+    if (parts.first != parts.second) {
       const Index first = find_root(part, parts.first);
       const Index second = find_root(part, parts.second);
       if (first == second) continue;

@@ -13,7 +13,6 @@ namespace isotherm::slam::detail {
 struct Group {
   std::vector<Index> loops;  ///< ascending
   double gain = 0.0;
-  bool connected = false;         ///< to a part of the map that its other ends are on
   std::pair<Index, Index> parts;  ///< of the map that its first loop joins
 };
 

@@ -9,10 +9,12 @@ namespace isotherm::slam::detail {
 /// How a loop stands under an explanation.
 struct Standing {
   std::pair<Index, Index> parts;  ///< of the map, by number, that its ends lie on
-  bool connected = false;         ///< odometry or other accepted loops join its ends
-  double chi2 = 0.0;              ///< against what they predict
-  double evidence = 0.0;          ///< log of how much likelier true than false, without the prior
-  double log_odds = 0.0;          ///< of true, with the prior
+  /// Whether odometry or other accepted loops join its ends.
+  bool connected() const { return parts.first == parts.second; }
+
+  double chi2 = 0.0;      ///< against what they predict
+  double evidence = 0.0;  ///< log of how much likelier true than false, without the prior
+  double log_odds = 0.0;  ///< of true, with the prior
 };
 
 }  // namespace isotherm::slam::detail

@@ -86,11 +86,6 @@ typename Pose::Tangent Estimate<Pose>::residual(const Link<Pose>& link) const {
 }
 
 template <class Pose>
-bool Estimate<Pose>::connected(const Link<Pose>& loop) const {
-  return component_[loop.a] == component_[loop.b];
-}
-
-template <class Pose>
 std::pair<Index, Index> Estimate<Pose>::parts(const Link<Pose>& loop) const {
   return {component_[loop.a], component_[loop.b]};
 }

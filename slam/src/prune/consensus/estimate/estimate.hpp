@@ -60,17 +60,15 @@ class Estimate {
   /// log(T_measured^-1 T_a^-1 T_b).
   Tangent residual(const Link<Pose>& link) const;
 
-  /// Whether trusted and accepted links join the ends of `loop`.
-  bool connected(const Link<Pose>& loop) const;
-
-  /// Numbers of the components that the ends of a loop lie on.
+  /// Numbers of the components that the ends of a loop lie on: the same where trusted and accepted
+  /// links join them.
   std::pair<Index, Index> parts(const Link<Pose>& loop) const;
 
   /// Covariances of T_a^-1 T_b, one each of `loops`, as perturbations on the right, from
   /// the factor of the last update. The ends of each must be connected.
   std::vector<Matrix> relative_covariances(std::span<const Index> loops) const;
 
-  /// r' Omega r summed over odometry, in units of the file's covariances.
+  /// r' Omega r summed over odometry, by coordinate, in units of the file's covariances.
   Tangent odometry_cost() const;
 
   /// log|H|, of the factor of the last update.
