@@ -31,14 +31,18 @@ check_packages=(clang-format-14 clang-tidy-16 shellcheck git)
 # What scripts/fuzz.sh builds with; libFuzzer and the sanitizers are a package of their own.
 fuzz_packages=(clang-14 libclang-rt-14-dev)
 
+# What the distributed spectral engine needs: solvers, and MPI to start them with.
+mpi_packages=(slepc-dev petsc-dev openmpi-bin pkg-config)
+
 usage() {
   cat <<'USAGE'
-usage: scripts/install-deps.sh [--tests] [--checks] [--fuzz] [--list]
+usage: scripts/install-deps.sh [--tests] [--checks] [--fuzz] [--mpi] [--list]
 
 Installs the Debian packages Isotherm is built with.
   --tests  also those that only the tests need: Python's headers, shells, a browser and Node
   --checks also those that scripts/check.sh calls
   --fuzz   also those that scripts/fuzz.sh builds with
+  --mpi    also PETSc, SLEPc and MPI, for the spectral engine beyond one machine
   --list   only print which packages are missing
 USAGE
 }
@@ -63,6 +67,7 @@ for argument in "$@"; do
     --list) list_only=true ;;
     --tests) tests=true; packages+=("${test_packages[@]}") ;;
     --checks) packages+=("${check_packages[@]}") ;;
+    --mpi) packages+=("${mpi_packages[@]}") ;;
     --fuzz) packages+=("${fuzz_packages[@]}") ;;
     --help | -h) usage; exit 0 ;;
     *) usage >&2; exit 2 ;;

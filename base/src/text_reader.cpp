@@ -116,6 +116,9 @@ TextReader::TextReader(std::string name, std::string_view text) : path_(std::mov
   };
 }
 
+TextReader::TextReader(std::string name, Source source, std::uint64_t lines_before)
+    : path_(std::move(name)), source_(std::move(source)), line_number_(lines_before) {}
+
 // Moves what is unread to the front and reads on; false if nothing was added.
 bool TextReader::fill() {
   if (source_ended_) return false;
@@ -141,6 +144,18 @@ std::string_view TextReader::peek() {
   while (end_ - begin_ < kLookAhead && fill()) {
   }
   return {buffer_.data() + begin_, end_ - begin_};
+}
+
+std::size_t TextReader::bytes(std::span<char> target) {
+  std::size_t count = 0;
+  while (count < target.size()) {
+    if (begin_ == end_ && !fill()) break;
+    const std::size_t some = std::min(target.size() - count, end_ - begin_);
+    std::memcpy(target.data() + count, buffer_.data() + begin_, some);
+    begin_ += some;
+    count += some;
+  }
+  return count;
 }
 
 bool TextReader::next_line() {

@@ -140,6 +140,24 @@ TEST(TextReader, ReadsCompressedFilesAndRefusesDamagedOnes) {
               testing::HasSubstr("cut.gz: cannot be read: "));
 }
 
+TEST(TextReader, ReadsPartsOfATextAndBytesAsTheyAre) {
+  const std::string text("three\nfo\0ur\nx", 13);
+  const auto source = [rest = std::string_view(text)](std::span<char> target) mutable {
+    const auto count = std::min<std::size_t>({rest.size(), target.size(), 4});
+    std::copy_n(rest.begin(), count, target.begin());
+    rest.remove_prefix(count);
+    return count;
+  };
+  TextReader reader("part", source, 2);
+  ASSERT_TRUE(reader.next_line());
+  EXPECT_EQ(reader.line_number(), 3u);
+  std::string bytes(6, ' ');
+  EXPECT_EQ(reader.bytes(bytes), 6u);
+  EXPECT_EQ(bytes, std::string("fo\0ur\n", 6));
+  EXPECT_EQ(reader.bytes(bytes), 1u);
+  EXPECT_EQ(bytes.front(), 'x');
+}
+
 TEST(TextReader, NamesWhatItCannotOpen) {
   const TemporaryFolder folder;
   EXPECT_THROW(TextReader(folder / "absent"), FileError);

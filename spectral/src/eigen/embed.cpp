@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "eigen/embedding_from_pairs.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/spectral/eigen/embedding.hpp"
 
@@ -41,15 +42,16 @@ void shorten(EigenDecomposition& eigen, VectorBounds& vectors, Index count) {
 
 void EmbedOptions::validate() const { require_fields_in_range(*this); }
 
-EmbedResult embed(const WeightedGraph& graph, const EmbedOptions& options,
-                  const ProgressCallback& progress) {
+namespace detail {
+
+EmbedResult embed(std::int64_t vertex_count, std::int64_t component_count,
+                  const EmbedOptions& options, const FindEigenpairs& find) {
   options.validate();
-  const Laplacian laplacian(graph, options.laplacian);
   EmbedResult result;
-  result.components = laplacian.components().count;
+  result.components = static_cast<Index>(component_count);
   // Heat tells components apart by the null space, in which one component has one point.
-  const bool null_vectors = options.method == Embedding::heat && result.components > 1;
-  result.available = laplacian.size() - (null_vectors ? 0 : result.components);
+  const bool null_vectors = options.method == Embedding::heat && component_count > 1;
+  result.available = static_cast<Index>(vertex_count - (null_vectors ? 0 : component_count));
   const auto wanted = static_cast<Index>(
       std::clamp<std::int64_t>(options.dimensions, 1, std::max<Index>(1, result.available)));
   // The next value tells whether the last vector stands alone.
@@ -57,8 +59,7 @@ EmbedResult embed(const WeightedGraph& graph, const EmbedOptions& options,
   EigenOptions eigen_options;
   eigen_options.count = complete ? wanted : wanted + 1;
   eigen_options.null_vectors = null_vectors;
-  eigen_options.progress = progress;
-  result.eigen = smallest_eigenpairs(laplacian, eigen_options);
+  result.eigen = find(eigen_options);
   result.vectors = vector_bounds(result.eigen, complete);
   if (result.eigen.null_count <= wanted) {
     result.interchangeable = interchangeable(result.vectors, wanted);
@@ -66,6 +67,19 @@ EmbedResult embed(const WeightedGraph& graph, const EmbedOptions& options,
   shorten(result.eigen, result.vectors, wanted);
   result.rows = coordinates(result.eigen, options);
   return result;
+}
+
+}  // namespace detail
+
+EmbedResult embed(const WeightedGraph& graph, const EmbedOptions& options,
+                  const ProgressCallback& progress) {
+  options.validate();
+  const Laplacian laplacian(graph, options.laplacian);
+  return detail::embed(laplacian.size(), laplacian.components().count, options,
+                       [&](EigenOptions eigen_options) {
+                         eigen_options.progress = progress;
+                         return smallest_eigenpairs(laplacian, eigen_options);
+                       });
 }
 
 }  // namespace isotherm::spectral

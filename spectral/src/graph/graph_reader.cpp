@@ -1,33 +1,24 @@
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
 
-#include "isotherm/base/csv.hpp"
+#include "graph/binary_graph.hpp"
+#include "graph/edge_rows.hpp"
 #include "isotherm/base/text_writer.hpp"
 #include "isotherm/spectral/graph/graph_file.hpp"
 
 namespace isotherm::spectral {
 namespace {
 
-constexpr std::string_view kMatrixMarket = "%%MatrixMarket";
 // The ends of all edges must be countable with an Index.
 constexpr std::size_t kMostEdges = std::numeric_limits<Index>::max() / 2;
 
-struct RawEdge {
-  std::uint64_t from = 0;
-  std::uint64_t to = 0;
-  double weight = 1.0;
-};
-
-bool usable_weight(double weight) { return std::isfinite(weight) && weight > 0.0; }
-
-constexpr const char* kExpectedWeight = "expected a weight, finite and positive";
+using detail::FileEdge;
 
 // Positions for ids: ascending, without gaps.
-GraphFile build_graph(const std::vector<RawEdge>& raw, ReadReport report) {
+GraphFile build_graph(const std::vector<FileEdge>& raw, ReadReport report) {
   GraphFile file;
   file.report = std::move(report);
   for (const auto& edge : raw) {
@@ -56,7 +47,7 @@ void check_edge_count(const ReadReport& report, std::size_t count) {
   }
 }
 
-GraphFile finish_edge_list(std::vector<RawEdge> edges, ReadReport report, std::uint64_t lines) {
+GraphFile finish_edge_list(std::vector<FileEdge> edges, ReadReport report, std::uint64_t lines) {
   report.lines = lines;
   report.records["edge"] = edges.size();
   check_edge_count(report, edges.size());
@@ -67,83 +58,24 @@ GraphFile finish_edge_list(std::vector<RawEdge> edges, ReadReport report, std::u
   return build_graph(edges, std::move(report));
 }
 
-constexpr const char* kHowToJoin =
-    ", not edges; 'isotherm edges' joins points by --neighbours or --radius";
-
-// Coordinates in place of numbers of vertices.
-void require_vertices(const CsvReader& csv, std::size_t from) {
-  const auto field = csv.text(from, "the first vertex");
-  double coordinate = 0.0;
-  std::uint64_t vertex = 0;
-  if (!parse_unsigned(field, vertex) && parse_number(field, coordinate)) {
-    csv.fail(from,
-             std::string("expected the number of a vertex; these look like points") + kHowToJoin);
-  }
-}
-
-GraphFile read_comma_list(TextReader& text, ReadReport report) {
-  CsvReader csv(std::move(text));
-  if (csv.find_column("x") && !csv.find_column("from")) {
-    throw ParseError({report.path, 0, 0}, "x", std::string("these are points") + kHowToJoin);
-  }
-  const auto from = csv.column("from", 0);
-  const auto to = csv.column("to", 1);
-  const auto named_weight = csv.find_column("weight");
-  std::vector<RawEdge> edges;
-  while (csv.next_row()) {
-    if (edges.empty()) require_vertices(csv, from);
-    RawEdge edge{csv.unsigned_integer(from, "the first vertex"),
-                 csv.unsigned_integer(to, "the second vertex"), 1.0};
-    const bool weighted = csv.has_header() ? named_weight.has_value() : csv.field_count() > 2;
-    if (weighted) {
-      const auto column = named_weight.value_or(2);
-      edge.weight = csv.number(column, "a weight");
-      if (!usable_weight(edge.weight)) csv.fail(column, kExpectedWeight);
-    }
-    edges.push_back(edge);
-  }
-  return finish_edge_list(std::move(edges), std::move(report), csv.line_number());
-}
-
-bool has_names(std::string_view line) {
-  const auto names = split(line, " \t\r");
-  return names.size() > 1 && names[0] == "from" && names[1] == "to" &&
-         (names.size() == 2 || (names.size() == 3 && names[2] == "weight"));
-}
-
-GraphFile read_blank_list(TextReader& text, ReadReport report) {
-  std::vector<RawEdge> edges;
-  bool first = true;
-  while (text.next_line()) {
-    if (text.at_line_end() || text.line().starts_with('#') || text.line().starts_with('%')) {
-      continue;
-    }
-    if (std::exchange(first, false) && has_names(text.line())) continue;
-    RawEdge edge{text.unsigned_integer("the first vertex"),
-                 text.unsigned_integer("the second vertex"), 1.0};
-    if (!text.at_line_end()) {
-      edge.weight = text.number("a weight");
-      if (!usable_weight(edge.weight)) text.fail(kExpectedWeight);
-    }
-    text.expect_line_end();
-    edges.push_back(edge);
-  }
-  return finish_edge_list(std::move(edges), std::move(report), text.line_number());
+template <class Rows>
+GraphFile read_list(Rows rows, ReadReport report) {
+  std::vector<FileEdge> edges;
+  for (FileEdge edge; rows.next(edge);) edges.push_back(edge);
+  return finish_edge_list(std::move(edges), std::move(report), rows.line_number());
 }
 
 class MatrixMarketReader {
  public:
   MatrixMarketReader(TextReader& text, const ReadOptions& options, ReadReport report)
-      : text_(text), options_(options), report_(std::move(report)) {}
+      : text_(text), rows_(text), options_(options), report_(std::move(report)) {}
 
   GraphFile run() {
-    read_banner();
-    read_sizes();
-    while (next_content_line()) read_entry();
-    if (count_ != entry_count_) {
-      throw ParseError(
-          {text_.path(), 0, 0}, "",
-          "expected " + std::to_string(entry_count_) + " entries, found " + std::to_string(count_));
+    for (detail::MatrixRows::Entry entry; rows_.next(entry);) take(entry);
+    if (count_ != rows_.entry_count()) {
+      throw ParseError({text_.path(), 0, 0}, "",
+                       "expected " + std::to_string(rows_.entry_count()) + " entries, found " +
+                           std::to_string(count_));
     }
     check_vertex_count();
     merge_triangles();
@@ -153,83 +85,36 @@ class MatrixMarketReader {
   }
 
  private:
-  void read_banner() {
-    text_.next_line();
-    text_.word();
-    expect_word("matrix");
-    expect_word("coordinate");
-    const auto field = lower(text_.word("real, integer or pattern"));
-    if (field != "real" && field != "integer" && field != "pattern") {
-      text_.fail("expected real, integer or pattern");
-    }
-    pattern_ = field == "pattern";
-    const auto symmetry = lower(text_.word("symmetric or general"));
-    if (symmetry != "symmetric" && symmetry != "general") {
-      text_.fail("expected symmetric or general");
-    }
-    general_ = symmetry == "general";
-    text_.expect_line_end();
-  }
-
-  void read_sizes() {
-    if (!next_content_line()) {
-      throw ParseError({text_.path(), text_.line_number(), 0}, "", "expected a line of sizes");
-    }
-    vertex_count_ = text_.unsigned_integer("the number of rows");
-    if (text_.unsigned_integer("the number of columns") != vertex_count_) {
-      text_.fail("expected as many columns as rows");
-    }
-    if (vertex_count_ > std::numeric_limits<Index>::max() - 1) text_.fail("too many rows");
-    entry_count_ = text_.unsigned_integer("the number of entries");
-    text_.expect_line_end();
-  }
-
-  void read_entry() {
-    if (count_ == entry_count_) {
-      throw ParseError({text_.path(), text_.line_number(), 0}, "", "more entries than stated");
+  void take(const detail::MatrixRows::Entry& entry) {
+    const auto& [row, column, weight, line] = entry;
+    if (count_ == rows_.entry_count()) {
+      throw ParseError({text_.path(), line, 0}, "", "more entries than stated");
     }
     check_edge_count(report_, ++count_);
-    const auto row = index("a row");
-    const auto column = index("a column");
-    double weight = 1.0;
-    if (!pattern_) weight = text_.number("a weight");
-    const bool usable = usable_weight(weight);
     if (row == column) {
-      add_note("diagonal entry", "diagonal entry; left out");
+      add_note("diagonal entry", line, "diagonal entry; left out");
     } else if (weight == 0.0) {
-      add_note("zero entry", "entry that is zero; left out");
-    } else if (!usable) {
-      text_.fail(kExpectedWeight);
+      add_note("zero entry", line, "entry that is zero; left out");
     } else {
-      entries_.push_back({std::max(row, column), std::min(row, column), row > column, weight,
-                          text_.line_number()});
+      entries_.push_back(
+          {std::max(row, column), std::min(row, column), row > column, weight, line});
     }
-    text_.expect_line_end();
-  }
-
-  std::uint64_t index(std::string_view what) {
-    const auto value = text_.unsigned_integer(what);
-    if (value < 1 || value > vertex_count_) {
-      text_.fail("expected " + std::string(what) + " in [1, " + std::to_string(vertex_count_) +
-                 "]");
-    }
-    return value;
   }
 
   // Memory for vertices must be earned by entries.
   void check_vertex_count() const {
     constexpr std::uint64_t kFree = 1'000'000;
     constexpr std::uint64_t kPerEntry = 64;
-    if (vertex_count_ > kFree + kPerEntry * count_) {
+    if (rows_.vertex_count() > kFree + kPerEntry * count_) {
       throw ParseError({text_.path(), 0, 0}, "",
-                       "claims " + std::to_string(vertex_count_) + " rows for " +
+                       "claims " + std::to_string(rows_.vertex_count()) + " rows for " +
                            std::to_string(count_) + " entries");
     }
   }
 
   // Where the whole matrix is stored, joins (i, j) with (j, i).
   void merge_triangles() {
-    if (!general_) return;
+    if (!rows_.general()) return;
     std::stable_sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
       return std::tie(a.row, a.column) < std::tie(b.row, b.column);
     });
@@ -282,57 +167,22 @@ class MatrixMarketReader {
       edges.push_back(
           {static_cast<Index>(entry.column - 1), static_cast<Index>(entry.row - 1), entry.weight});
     }
-    for (std::uint64_t id = 1; id <= vertex_count_; ++id) file.ids.push_back(id);
-    file.graph = WeightedGraph(static_cast<Index>(vertex_count_), std::move(edges));
+    for (std::uint64_t id = 1; id <= rows_.vertex_count(); ++id) file.ids.push_back(id);
+    file.graph = WeightedGraph(static_cast<Index>(rows_.vertex_count()), std::move(edges));
     return file;
   }
 
-  bool next_content_line() {
-    while (text_.next_line()) {
-      if (!text_.at_line_end() && !text_.line().starts_with('%')) return true;
-    }
-    return false;
-  }
-
-  static std::string lower(std::string_view word) {
-    std::string text(word);
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-  }
-
-  void expect_word(const std::string& wanted) {
-    if (lower(text_.word(wanted)) != wanted) text_.fail("expected '" + wanted + "'");
-  }
-
-  void add_note(const std::string& kind, const std::string& message) {
-    report_.add_note({kind, text_.location(), "", message});
+  void add_note(const std::string& kind, std::uint64_t line, const std::string& message) {
+    report_.add_note({kind, {text_.path(), line, 0}, "", message});
   }
 
   TextReader& text_;
+  detail::MatrixRows rows_;
   const ReadOptions& options_;
   ReadReport report_;
-  bool pattern_ = false;
-  bool general_ = false;
-  std::uint64_t vertex_count_ = 0;
-  std::uint64_t entry_count_ = 0;  // as stated
   std::uint64_t count_ = 0;
   std::vector<Entry> entries_;
 };
-
-// Whether the first row that is no comment has a comma.
-bool separated_by_commas(std::string_view start) {
-  while (!start.empty()) {
-    const auto newline = start.find('\n');
-    const auto line = start.substr(0, newline);
-    const auto first = line.find_first_not_of(" \t\r");
-    if (first != std::string_view::npos && line[first] != '#') {
-      return line.find(',') != std::string_view::npos;
-    }
-    if (newline == std::string_view::npos) break;
-    start.remove_prefix(newline + 1);
-  }
-  return false;
-}
 
 }  // namespace
 
@@ -341,13 +191,19 @@ GraphFile read_graph(TextReader& reader, const ReadOptions& options) {
   ReadReport report;
   report.path = reader.path();
   const auto start = reader.peek();
-  if (start.starts_with(kMatrixMarket)) {
+  if (start.starts_with(detail::kMatrixMarket)) {
     report.format = "matrix-market";
     return MatrixMarketReader(reader, options, std::move(report)).run();
   }
+  if (start.starts_with(detail::kBinaryGraph)) {
+    report.format = "binary";
+    return detail::read_binary_graph(reader, std::move(report));
+  }
   report.format = "edges";
-  if (separated_by_commas(start)) return read_comma_list(reader, std::move(report));
-  return read_blank_list(reader, std::move(report));
+  if (detail::separated_by_commas(start)) {
+    return read_list(detail::CommaRows(std::move(reader)), std::move(report));
+  }
+  return read_list(detail::BlankRows(std::move(reader)), std::move(report));
 }
 
 GraphFile read_graph(const std::string& path, const ReadOptions& options) {

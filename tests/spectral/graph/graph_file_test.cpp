@@ -137,6 +137,32 @@ TEST(WriteGraph, ReadsBack) {
   EXPECT_THROW(write_edge_csv(folder / "b.csv", graph, {1}), InvalidArgument);
 }
 
+TEST(WriteGraph, TheBinaryFormKeepsEverything) {
+  const TemporaryFolder folder;
+  const WeightedGraph graph(5, {{1, 0, 1.0 / 3}, {0, 1, 7.0}, {3, 3, 1e-300}, {2, 1, 6.0}});
+  const std::vector<std::uint64_t> ids = {10, 20, 30, 40, 18446744073709551615u};
+  for (const char* name : {"a.isograph", "a.isograph.gz"}) {
+    write_binary_graph(folder / name, graph, ids);
+    const auto file = read_graph(folder / name);
+    EXPECT_EQ(file.report.format, "binary");
+    EXPECT_EQ(file.ids, ids);
+    ASSERT_EQ(file.graph.edge_count(), 4);
+    for (Index k = 0; k < 4; ++k) {
+      EXPECT_EQ(file.graph.edge(k).from, graph.edge(k).from);
+      EXPECT_EQ(file.graph.edge(k).to, graph.edge(k).to);
+      EXPECT_EQ(file.graph.edge(k).weight, graph.edge(k).weight);
+    }
+  }
+  const auto bytes = read_file(folder / "a.isograph");
+  EXPECT_EQ(bytes.size(), 32u + 5 * 8 + 4 * 16);
+  for (std::size_t size : {std::size_t{9}, std::size_t{40}, bytes.size() - 1}) {
+    EXPECT_THROW(parse(bytes.substr(0, size)), ParseError) << size;
+  }
+  EXPECT_THROW(parse(bytes + "x"), ParseError);
+  EXPECT_THROW(write_binary_graph(folder / "b", graph, {1}), InvalidArgument);
+  EXPECT_THROW(write_binary_graph(folder / "b", graph, {1, 2, 3, 4, 4}), InvalidArgument);
+}
+
 TEST(MergeDirections, MakesBothDirectionsOfAnEdgeOne) {
   const std::string text = "from,to,weight\n1,2,3\n2,3,1\n2,1,3\n3,2,2\n1,2,5\n4,4,1\n4,4,1\n";
   auto file = parse(text);

@@ -38,6 +38,7 @@ class CsvReader {
 
   std::size_t field_count() const noexcept { return fields_.size(); }
   std::uint64_t line_number() const noexcept { return reader_.line_number(); }
+  const std::string& path() const noexcept { return reader_.path(); }
 
   /// The field in `column` of the current row; `what` names it in messages.
   /// @throws ParseError if there is none or it is not of that kind.

@@ -34,6 +34,12 @@ class TextReader {
   /// the path in messages.
   TextReader(std::string name, std::string_view text);
 
+  /// Fills the span as far as it can; 0 at the end of the input.
+  using Source = std::function<std::size_t(std::span<char>)>;
+
+  /// Reads a part of the text called `name`, which has `lines_before` lines in front of it.
+  TextReader(std::string name, Source source, std::uint64_t lines_before);
+
   TextReader(TextReader&&) = default;
   TextReader& operator=(TextReader&&) = default;
 
@@ -49,6 +55,10 @@ class TextReader {
   /// Goes to the next line and to its first token; false at the end of input.
   /// @throws FileError if reading fails, ParseError for an endless line.
   bool next_line();
+
+  /// The next bytes as they are, for what is no text: as many as the span holds, fewer at the end
+  /// of the input. @throws FileError if reading fails
+  std::size_t bytes(std::span<char> target);
 
   /// Number of the current line, from 1.
   std::uint64_t line_number() const noexcept { return line_number_; }
@@ -88,8 +98,6 @@ class TextReader {
   [[noreturn]] void fail(const std::string& problem) const;
 
  private:
-  using Source = std::function<std::size_t(std::span<char>)>;  // 0 at the end of input
-
   bool fill();
   bool is_blank(char c) const noexcept { return c == ' ' || c == '\t' || c == separator_; }
   void skip_blanks() noexcept;

@@ -17,7 +17,8 @@ struct GraphFile {
   ReadReport report;
 };
 
-/// Reads a weighted graph, telling the format by its content: an edge list
+/// Reads a weighted graph, telling the format by its content: what write_binary_graph() wrote, an
+/// edge list
 /// (`from to [weight]` a row, separated by commas or blanks, with or without
 /// column names; weights default to 1) or a symmetric sparse matrix in
 /// MatrixMarket coordinate format (entry (i, j) is the weight of edge {i, j};
@@ -50,5 +51,12 @@ void write_edge_csv(const std::string& path, const WeightedGraph& graph,
 /// numbered from 1 in order of position; parallel edges are added up.
 /// @throws FileError if the file cannot be written.
 void write_matrix_market(const std::string& path, const WeightedGraph& graph);
+
+/// Writes the compact form of a graph (docs/formats.md): half the size of text, read without
+/// parsing, and any part of it by itself. All edges and vertices are kept as they are.
+/// @throws FileError if the file cannot be written, InvalidArgument unless `ids` has one entry a
+///   vertex, in ascending order.
+void write_binary_graph(const std::string& path, const WeightedGraph& graph,
+                        const std::vector<std::uint64_t>& ids);
 
 }  // namespace isotherm::spectral

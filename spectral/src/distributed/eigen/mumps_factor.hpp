@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "distributed/support/comm.hpp"
+
+namespace isotherm::spectral::distributed::detail {
+
+/// A symmetric factorisation by MUMPS. Where it is large, the ordering is found by all ranks, too.
+class MumpsFactor {
+ public:
+  enum class For { solving, counting };
+
+  /// Analyses the pattern only; positive definite or not is what MAT_SPD says of the matrix.
+  MumpsFactor(const Comm& comm, Mat matrix, For purpose);
+
+  /// What MUMPS expects the rank that needs most to need, in bytes.
+  double expected_memory() const;
+
+  /// @throws NumericalError
+  void factorise();
+
+  void solve(Vec b, Vec x) const { check(MatSolve(factor_.get(), b, x)); }
+
+  /// Pivots below 0: as many eigenvalues are. Only of a factor for counting.
+  std::int64_t negative_pivots() const;
+
+ private:
+  void analyse(PetscInt spare);
+
+  const Comm& comm_;
+  Mat matrix_;
+  For purpose_;
+  MatHandle factor_;
+  MatFactorInfo info_ = {};
+};
+
+}  // namespace isotherm::spectral::distributed::detail
