@@ -1,5 +1,8 @@
 #include "command.hpp"
 
+#include <exception>
+#include <new>
+
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/output_group.hpp"
 #include "isotherm/base/text_writer.hpp"
@@ -48,6 +51,24 @@ int run_with_outputs(const CommonFlags& flags, const std::function<int()>& run) 
   const int code = run();
   group.commit();
   return code;
+}
+
+Ending run_to_end(const Verb& verb) {
+  try {
+    return {verb.run(), ""};
+  } catch (const InvalidArgument& error) {
+    return {kUsage, error.what()};
+  } catch (const ParseError& error) {
+    return {kBadInput, error.what()};
+  } catch (const FileError& error) {
+    return {kBadInput, error.what()};
+  } catch (const Cancelled&) {
+    return {kInterrupted, ""};
+  } catch (const std::bad_alloc&) {
+    return {kFailure, "out of memory"};
+  } catch (const std::exception& error) {
+    return {kFailure, error.what()};
+  }
 }
 
 Json read_config(const CommonFlags& flags) {

@@ -60,6 +60,15 @@ Verb verb_of(CLI::App* parser, const std::shared_ptr<State>& state) {
           [state] { return run_with_outputs(state->flags, [&state] { return state->run(); }); }};
 }
 
+/// How a run ended: what the process returns, and what there is to say of it.
+struct Ending {
+  int code = kOk;
+  std::string problem;  ///< empty if there is none, or the run was interrupted
+};
+
+/// Runs, and turns what is thrown into the exit codes of the contract.
+Ending run_to_end(const Verb& verb);
+
 /// The configuration named by --config, or an empty object.
 /// @throws FileError, ParseError
 Json read_config(const CommonFlags& flags);

@@ -73,6 +73,8 @@ void stop_cleanly_on_interrupt() {
 
 bool interrupted() noexcept { return asked_to_stop; }
 
+void leave_interruption_unsaid() noexcept { said.test_and_set(); }
+
 void say_interrupted() noexcept {
   if (!said.test_and_set()) put("isotherm: interrupted; nothing was written\n");
 }

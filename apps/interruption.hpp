@@ -18,4 +18,7 @@ bool interrupted() noexcept;
 /// What the process says about it, once.
 void say_interrupted() noexcept;
 
+/// Has the process say nothing about it: another one, of the same run, does.
+void leave_interruption_unsaid() noexcept;
+
 }  // namespace isotherm::apps

@@ -1,4 +1,3 @@
-#include <exception>
 #include <string_view>
 #include <vector>
 
@@ -21,24 +20,11 @@ int failed(std::string_view problem, int code) {
   return code;
 }
 
-// Turns what a verb throws into the exit codes of the contract.
 int run_guarded(const Verb& verb) {
-  try {
-    return verb.run();
-  } catch (const InvalidArgument& error) {
-    return failed(error.what(), kUsage);
-  } catch (const ParseError& error) {
-    return failed(error.what(), kBadInput);
-  } catch (const FileError& error) {
-    return failed(error.what(), kBadInput);
-  } catch (const Cancelled&) {
-    say_interrupted();
-    return kInterrupted;
-  } catch (const std::bad_alloc&) {
-    return failed("out of memory", kFailure);
-  } catch (const std::exception& error) {
-    return failed(error.what(), kFailure);
-  }
+  const auto [code, problem] = run_to_end(verb);
+  if (!problem.empty()) complain(problem);
+  if (code == kInterrupted) say_interrupted();
+  return code;
 }
 
 int run(int argc, char** argv) {

@@ -17,9 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // Each stands for one format, whoever writes it; a file with another suffix may hold anything.
-constexpr std::array<std::string_view, 12> kKnownSuffixes = {".g2o",   ".graph", ".tum",  ".kitti",
-                                                             ".euroc", ".pyfg",  ".mtx",  ".csv",
-                                                             ".npy",   ".json",  ".html", ".svg"};
+constexpr std::array<std::string_view, 13> kKnownSuffixes = {
+    ".g2o", ".graph", ".tum",  ".kitti", ".euroc", ".pyfg",    ".mtx",
+    ".csv", ".npy",   ".json", ".html",  ".svg",   ".isograph"};
 
 bool contains(const auto& all, std::string_view one) {
   return std::find(all.begin(), all.end(), one) != all.end();

@@ -27,7 +27,7 @@ using slam::FileContent;
 using slam::FileFormat;
 
 // Which name goes with which format; one that goes with several tells none.
-constexpr std::array<std::pair<std::string_view, FileFormat>, 10> kSuffixes = {{
+constexpr std::array<std::pair<std::string_view, FileFormat>, 11> kSuffixes = {{
     {".g2o", FileFormat::g2o},
     {".graph", FileFormat::toro},
     {".pyfg", FileFormat::pyfg},
@@ -35,6 +35,7 @@ constexpr std::array<std::pair<std::string_view, FileFormat>, 10> kSuffixes = {{
     {".kitti", FileFormat::kitti},
     {".euroc", FileFormat::euroc},
     {".mtx", FileFormat::matrix_market},
+    {".isograph", FileFormat::binary_graph},
     {".csv", FileFormat::euroc},
     {".csv", FileFormat::ranges},
     {".csv", FileFormat::edges},
@@ -216,6 +217,8 @@ struct ConvertVerb : OptionVerb<NoOptions> {
   ReadReport convert_graph(const spectral::GraphFile& file, FileFormat target) {
     if (target == FileFormat::edges) {
       spectral::write_edge_csv(output, file.graph, file.ids);
+    } else if (target == FileFormat::binary_graph) {
+      spectral::write_binary_graph(output, file.graph, file.ids);
     } else if (target == FileFormat::matrix_market) {
       note_losses(file);
       spectral::write_matrix_market(output, file.graph);
@@ -240,9 +243,9 @@ Verb add_convert(CLI::App& root) {
       .add(*verb, "-o,--output", convert->output, "file to write (- for stdout)", {})
       ->required();
   verb->add_option("--to", convert->to,
-                   "g2o, toro, tum, kitti, euroc, planar, pyfg, ranges, edges or matrix-market; "
-                   "by default what the output's suffix says (.g2o .graph .tum .kitti .euroc "
-                   ".pyfg .mtx)")
+                   "g2o, toro, tum, kitti, euroc, planar, pyfg, ranges, edges, matrix-market or "
+                   "binary-graph; by default what the output's suffix says (.g2o .graph .tum "
+                   ".kitti .euroc .pyfg .mtx .isograph)")
       ->type_name("FORMAT");
   verb->add_option("--axes", convert->axes,
                    "turn a trajectory in space: a camera's axes are z forward, x right, y down, "

@@ -122,6 +122,7 @@ FileContent content_of(FileFormat format) {
       return FileContent::trajectory;
     case FileFormat::edges:
     case FileFormat::matrix_market:
+    case FileFormat::binary_graph:
       return FileContent::graph;
     case FileFormat::unknown:
       break;
@@ -131,6 +132,7 @@ FileContent content_of(FileFormat format) {
 
 FileFormat detect_format(TextReader& reader) {
   std::string_view rest = reader.peek();
+  if (rest.starts_with("ISOGRAPH")) return FileFormat::binary_graph;
   const auto rows = format_of_rows(rest);
   if (rows != FileFormat::unknown) return rows;
   while (!rest.empty()) {

@@ -27,9 +27,10 @@ enum class FileFormat {
   flight_times,  ///< rows of microseconds node node and radio diagnostics
   edges,         ///< rows of from to [weight]
   matrix_market,
+  binary_graph,  ///< a plain graph, compact
 };
 
-constexpr std::array<EnumName<FileFormat>, 18> enum_names(FileFormat) {
+constexpr std::array<EnumName<FileFormat>, 19> enum_names(FileFormat) {
   return {{{FileFormat::unknown, "unknown"},
            {FileFormat::g2o, "g2o"},
            {FileFormat::toro, "toro"},
@@ -47,7 +48,8 @@ constexpr std::array<EnumName<FileFormat>, 18> enum_names(FileFormat) {
            {FileFormat::beacons, "beacons"},
            {FileFormat::flight_times, "flight-times"},
            {FileFormat::edges, "edges"},
-           {FileFormat::matrix_market, "matrix-market"}}};
+           {FileFormat::matrix_market, "matrix-market"},
+           {FileFormat::binary_graph, "binary-graph"}}};
 }
 
 /// What kind of data a file holds.

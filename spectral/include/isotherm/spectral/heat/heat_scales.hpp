@@ -14,4 +14,7 @@ namespace isotherm::spectral {
 /// One factorisation and some tens of solves. @throws NumericalError, Cancelled
 std::vector<double> automatic_scales(const WeightedGraph& graph, const RunContext& run = {});
 
+/// The same for a graph whose smallest eigenvalue that is not null is known; 0 if there is none.
+std::vector<double> automatic_scales(double smallest_eigenvalue);
+
 }  // namespace isotherm::spectral
