@@ -12,14 +12,6 @@ using distributed::EigenSolver;
 
 const std::vector<LaplacianKind> kKinds = {LaplacianKind::combinatorial, LaplacianKind::normalised};
 
-/// Few graphs, since what ranks have to say to each other takes long where they share cores: all
-/// shapes in one that is not connected, and one that is.
-std::vector<WeightedGraph> joined_shapes(Random& random) {
-  WeightedGraph all;
-  for (const auto& shape : shapes(random)) all = disjoint_union(all, shape);
-  return {all, random_geometric(120, 0.2, random)};
-}
-
 /// Values agree with those of the dense solver, and vectors have the residuals that are stated.
 void check_pairs(const WeightedGraph& graph, LaplacianKind kind, Index count, EigenSolver solver,
                  double tolerance) {

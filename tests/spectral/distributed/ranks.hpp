@@ -45,4 +45,12 @@ inline std::vector<WeightedGraph> shapes(Random& random) {
           disjoint_union(loopy_path(20, 4, random), grid_graph(5, 4))};
 }
 
+/// All shapes in one graph that is not connected, and one that is: few graphs, since what ranks
+/// have to say to each other takes long where they share cores.
+inline std::vector<WeightedGraph> joined_shapes(Random& random) {
+  WeightedGraph all;
+  for (const auto& shape : shapes(random)) all = disjoint_union(all, shape);
+  return {all, random_geometric(120, 0.2, random)};
+}
+
 }  // namespace isotherm_test

@@ -15,7 +15,9 @@ constexpr PetscInt kRootNode = 13, kSpareRoom = 14, kNullPivots = 24, kAnalysis 
                    kParallelOrdering = 29;
 constexpr PetscInt kExpectedMegabytes = 16;  // among its INFOG: of the rank that needs most
 
-// Of its errors: those for which its manual says to give it more room.
+// Of its errors: that it was built with no ordering that ranks find together, and those for which
+// its manual says to give it more room.
+constexpr PetscInt kNoParallelOrdering = -38;
 constexpr PetscInt kIntegersTooSmall = -8, kNumbersTooSmall = -9;
 // Delayed pivots take more room than the analysis foresees: so many per cent.
 constexpr PetscInt kSpare = 50, kMostSpare = 3200;
@@ -29,6 +31,13 @@ MumpsFactor::MumpsFactor(const Comm& comm, Mat matrix, For purpose)
 }
 
 void MumpsFactor::analyse(PetscInt spare) {
+  PetscInt rows = 0;
+  check(MatGetSize(matrix_, &rows, nullptr));
+  const bool large = comm_.size > 1 && rows > kOrderedByOne;
+  if (!large || !analyse(spare, true)) analyse(spare, false);
+}
+
+bool MumpsFactor::analyse(PetscInt spare, bool on_all_ranks) {
   check(MatGetFactor(matrix_, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, factor_.out()));
   check(MatMumpsSetIcntl(factor_.get(), kSpareRoom, spare));
   if (purpose_ == For::counting) {
@@ -36,19 +45,19 @@ void MumpsFactor::analyse(PetscInt spare) {
     check(MatMumpsSetIcntl(factor_.get(), kRootNode, 1));
     check(MatMumpsSetIcntl(factor_.get(), kNullPivots, 1));
   }
-  PetscInt rows = 0;
-  check(MatGetSize(matrix_, &rows, nullptr));
-  if (comm_.size > 1 && rows > kOrderedByOne) {
-    check(MatMumpsSetIcntl(factor_.get(), kAnalysis, 2));
-    check(MatMumpsSetIcntl(factor_.get(), kParallelOrdering, 1));  // PT-Scotch
-  }
+  check(MatMumpsSetIcntl(factor_.get(), kAnalysis, on_all_ranks ? 2 : 1));
   check(MatCholeskyFactorSymbolic(factor_.get(), matrix_, nullptr, &info_));
+  return infog(1) != kNoParallelOrdering;
+}
+
+PetscInt MumpsFactor::infog(PetscInt number) const {
+  PetscInt value = 0;
+  check(MatMumpsGetInfog(factor_.get(), number, &value));
+  return value;
 }
 
 double MumpsFactor::expected_memory() const {
-  PetscInt megabytes = 0;
-  check(MatMumpsGetInfog(factor_.get(), kExpectedMegabytes, &megabytes));
-  return 1e6 * static_cast<double>(megabytes);
+  return 1e6 * static_cast<double>(infog(kExpectedMegabytes));
 }
 
 void MumpsFactor::factorise() {
@@ -57,9 +66,7 @@ void MumpsFactor::factorise() {
     MatFactorError error = MAT_FACTOR_NOERROR;
     check(MatFactorGetError(factor_.get(), &error));
     if (error == MAT_FACTOR_NOERROR) return;
-    PetscInt code = 0, detail = 0;
-    check(MatMumpsGetInfog(factor_.get(), 1, &code));
-    check(MatMumpsGetInfog(factor_.get(), 2, &detail));
+    const PetscInt code = infog(1), detail = infog(2);
     const bool too_small = code == kIntegersTooSmall || code == kNumbersTooSmall;
     if (!too_small || spare >= kMostSpare) {
       throw NumericalError("factorisation", "MUMPS ended with INFOG(1) = " + std::to_string(code) +

@@ -7,7 +7,8 @@
 
 namespace isotherm::spectral::distributed::detail {
 
-/// A symmetric factorisation by MUMPS. Where it is large, the ordering is found by all ranks, too.
+/// A symmetric factorisation by MUMPS. Where it is large, the ordering is found by all ranks, too,
+/// if MUMPS was built for that; else rank 0 has the pattern of the whole matrix for a while.
 class MumpsFactor {
  public:
   enum class For { solving, counting };
@@ -28,6 +29,8 @@ class MumpsFactor {
 
  private:
   void analyse(PetscInt spare);
+  bool analyse(PetscInt spare, bool on_all_ranks);  // whether it could be done
+  PetscInt infog(PetscInt number) const;
 
   const Comm& comm_;
   Mat matrix_;

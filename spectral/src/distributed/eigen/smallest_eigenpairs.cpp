@@ -28,11 +28,17 @@ double free_share(const Comm& comm) {
   return least(comm, 0.5 * free / ranks);
 }
 
-bool fits(const Comm& comm, const MumpsFactor& factor, const SolverOptions& solver) {
-  if (solver.eigen_solver != EigenSolver::automatic) return true;
+/// What a factorisation may take on a rank, in bytes.
+double budget(const Comm& comm, const SolverOptions& solver) {
   constexpr double kGibi = 1024.0 * 1024.0 * 1024.0;
-  const double given = solver.factor_memory * kGibi;
-  return factor.expected_memory() <= (given > 0.0 ? given : free_share(comm));
+  return solver.factor_memory > 0.0 ? solver.factor_memory * kGibi : free_share(comm);
+}
+
+/// What rank 0 needs to find an ordering alone: both triangles of the pattern, and as much again
+/// to change while it eliminates, in integers of 32 bits.
+double memory_of_ordering(const Graph::State& graph) {
+  const auto entries = 2 * graph.edge_count + graph.rows.total();
+  return 2.0 * sizeof(std::int32_t) * static_cast<double>(entries);
 }
 
 /// How many eigenvalues lie below `bound`.
@@ -89,10 +95,13 @@ std::optional<Search> search_by_factor(const LaplacianMatrix& laplacian,
                                        const EigenOptions& options, const SolverOptions& solver,
                                        const Steps& steps) {
   if (solver.eigen_solver == EigenSolver::lobpcg) return std::nullopt;
-  const auto& comm = laplacian.graph().comm();
+  const auto& graph = laplacian.graph();
+  const bool by_size = solver.eigen_solver == EigenSolver::automatic;
+  const double room = by_size ? budget(graph.comm(), solver) : 0.0;
+  if (by_size && memory_of_ordering(graph) > room) return std::nullopt;
   const Grounded grounded(laplacian);
-  MumpsFactor factor(comm, grounded.get(), MumpsFactor::For::solving);
-  if (!fits(comm, factor, solver)) return std::nullopt;
+  MumpsFactor factor(graph.comm(), grounded.get(), MumpsFactor::For::solving);
+  if (by_size && factor.expected_memory() > room) return std::nullopt;
   factor.factorise();
   return iterate(laplacian, null_space, grounded, factor, edges, count, options, steps);
 }
