@@ -30,7 +30,8 @@ Json graph_json(const distributed::Graph& graph) {
           {"edges", graph.edge_count()},
           {"components", graph.component_count()},
           {"ranks", graph.session().size()},
-          {"cut", graph.cut()}};
+          {"cut", graph.cut()},
+          {"peak_megabytes_of_a_rank", graph.session().peak_memory() / 1'000'000}};
 }
 
 void write_json_of(const distributed::Session& session, const std::string& path, const Json& json) {

@@ -79,6 +79,22 @@ def embeds_in_both_formats(folder):
     expect(data.startswith(b"\x93NUMPY") and len(data) == 128 + 8 * 3 * 1500, len(data))
 
 
+def edges_do_not_depend_on_ranks(folder):
+    write_pose_graph(folder / "graph.csv", 400)
+    (folder / "trusted.csv").write_text("".join(f"{pose + 1},{pose}\n" for pose in range(200)))
+    texts = {}
+    for ranks in (1, 4):
+        code, _, err = run(folder, ranks, "edges", "graph.csv", "--trusted", "trusted.csv", "-o",
+                           "kept.csv", "--verdicts", "verdicts.csv", "--scales", "50,5")
+        expect(code == OK and "heat-multiscale" in err, err)
+        rows = [row.split(",") for row in (folder / "verdicts.csv").read_text().splitlines()]
+        texts[ranks] = ((folder / "kept.csv").read_text(), [row[:4] + row[6:] for row in rows])
+    expect(texts[1] == texts[4], "decisions")
+    stages = {row[4] for row in texts[1][1][1:]}
+    expect(stages == {"trusted", "t=50", "t=5"} or "bridge" in stages, stages)
+    expect("prune" in {row[3] for row in texts[1][1]}, "should prune some")
+
+
 def pairs_of_a_file(folder):
     write_pose_graph(folder / "graph.csv", 500)
     (folder / "pairs.csv").write_text("from,to\n3,400\n7,7\n")
@@ -158,7 +174,8 @@ def interrupted(folder):
     ends_without_output(folder, lambda process: process.send_signal(signal.SIGINT))
 
 
-CASES = [rows_do_not_depend_on_ranks, embeds_in_both_formats, pairs_of_a_file,
+CASES = [rows_do_not_depend_on_ranks, embeds_in_both_formats,
+         edges_do_not_depend_on_ranks, pairs_of_a_file,
          more_ranks_than_vertices, bad_input_is_told_once, cut_off_binary_graph, too_few_steps,
          killed_rank, interrupted]
 

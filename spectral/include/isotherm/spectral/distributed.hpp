@@ -44,6 +44,12 @@ class Session {
   int rank() const noexcept;
   int size() const noexcept;
 
+  /// The sum over all ranks. Collective.
+  std::int64_t sum(std::int64_t mine) const;
+
+  /// The most memory that any rank has had until now, in bytes. Collective.
+  std::int64_t peak_memory() const;
+
   /// Runs `work` on this rank; where it throws on some ranks, all throw the error of the first.
   void together(const std::function<void()>& work) const;
 
@@ -146,6 +152,10 @@ class Graph {
 
   /// This rank's part of the edges, in order of the file over the ranks.
   std::vector<FileOrderEdge> edges() const;
+
+  /// The graph on the same vertices with only those of this rank's edges() whose `keep` entry is
+  /// true. @throws InvalidArgument unless `keep` has one entry per edge
+  Graph filtered(const std::vector<bool>& keep) const;
 
   const Session& session() const noexcept;
 
@@ -262,9 +272,10 @@ ProjectedResistances project_resistances(const Graph& graph, const ProjectionOpt
 /// Which of edges() are bridges: their removal parts their component.
 std::vector<bool> find_bridges(const Graph& graph);
 
-/// Algorithm 1, as spectral::multiscale_heat(), on the edges() of which `candidate` says so; the
-/// verdicts are those of this rank's. Only threshold mean-sigma. `rounds` are the same on all
-/// ranks; `distances` are left empty. @throws InvalidArgument, Cancelled
+/// Algorithm 1, as spectral::multiscale_heat(), on those of this rank's edges() of which
+/// `candidate` says so; a verdict for each of edges(), also where it is no candidate. Only
+/// threshold mean-sigma. `rounds` are the same on all ranks; `distances` are left empty.
+/// @throws InvalidArgument, Cancelled
 MultiscaleHeat multiscale_heat(const Graph& graph, const std::vector<bool>& candidate,
                                const MultiscaleHeatOptions& options = {},
                                const RunContext& run = {});

@@ -45,6 +45,18 @@ std::vector<RowEdge> in_rows(const Comm& comm, const Blocks& positions, const Ro
   return mine;
 }
 
+/// Fills what the edges, each with its rank, say of the graph.
+void follow_from_edges(Graph::State& graph) {
+  const auto& comm = graph.comm();
+  graph.edge_count = sum(comm, static_cast<std::int64_t>(graph.edges.size()));
+  std::int64_t crossing = 0;
+  for (const auto& edge : graph.edges) crossing += graph.owns(edge.to) ? 0 : 1;
+  const auto total = std::max<std::int64_t>(1, graph.edge_count);
+  graph.cut = static_cast<double>(sum(comm, crossing)) / static_cast<double>(total);
+  assemble_laplacian(graph);
+  graph.components = find_components(comm, graph.rows, graph.edges, graph.position_of);
+}
+
 }  // namespace
 
 std::unique_ptr<Graph::State> build_graph(const Session& session, EdgePart part, Twice twice,
@@ -59,7 +71,6 @@ std::unique_ptr<Graph::State> build_graph(const Session& session, EdgePart part,
   if (twice == Twice::counts_once) {
     merge_directions(comm, {.strict = options.strict}, edges, graph->report);
   }
-  graph->edge_count = sum(comm, static_cast<std::int64_t>(edges.size()));
   graph->blocks = part.blocks;
   graph->ids = std::move(part.ids);
   auto rows = partition(comm, graph->blocks, edges, options.partitioner);
@@ -68,13 +79,26 @@ std::unique_ptr<Graph::State> build_graph(const Session& session, EdgePart part,
   graph->edges = in_rows(comm, graph->blocks, rows, std::move(edges));
   graph->row_of = std::move(rows.of_block);
 
-  std::int64_t crossing = 0;
-  for (const auto& edge : graph->edges) crossing += graph->owns(edge.to) ? 0 : 1;
-  const auto total = std::max<std::int64_t>(1, graph->edge_count);
-  graph->cut = static_cast<double>(sum(comm, crossing)) / static_cast<double>(total);
-  assemble_laplacian(*graph);
-  graph->components = find_components(comm, graph->rows, graph->edges, graph->position_of);
+  follow_from_edges(*graph);
   return graph;
+}
+
+std::unique_ptr<Graph::State> filter_edges(const Graph::State& graph,
+                                           const std::vector<char>& keep) {
+  auto left = std::make_unique<Graph::State>();
+  left->session = graph.session;
+  left->report = graph.report;
+  left->blocks = graph.blocks;
+  left->ids = graph.ids;
+  left->row_of = graph.row_of;
+  left->rows = graph.rows;
+  left->position_of = graph.position_of;
+  left->places = graph.places;
+  for (std::size_t k = 0; k < graph.edges.size(); ++k) {
+    if (keep[k] != 0) left->edges.push_back(graph.edges[k]);
+  }
+  follow_from_edges(*left);
+  return left;
 }
 
 }  // namespace isotherm::spectral::distributed::detail

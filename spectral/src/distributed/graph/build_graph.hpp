@@ -46,4 +46,8 @@ enum class Twice { counts_once, counts_twice };
 std::unique_ptr<Graph::State> build_graph(const Session& session, EdgePart part, Twice twice,
                                           const GraphOptions& options);
 
+/// The graph with only those of this rank's edges whose `keep` entry is not 0, on the same ranks.
+std::unique_ptr<Graph::State> filter_edges(const Graph::State& graph,
+                                           const std::vector<char>& keep);
+
 }  // namespace isotherm::spectral::distributed::detail

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "distributed/graph/build_graph.hpp"
+#include "distributed/graph/file_order.hpp"
 #include "graph/edge_rows.hpp"
 #include "isotherm/base/error.hpp"
 
@@ -87,6 +88,17 @@ std::vector<Index> Graph::positions_of(std::span<const std::uint64_t> ids) const
                                         std::to_string(ids[static_cast<std::size_t>(missing)]));
   });
   return found;
+}
+
+Graph Graph::filtered(const std::vector<bool>& keep) const {
+  const detail::FileOrder order(*state_);
+  session().together([&] {
+    if (keep.size() != order.count()) {
+      throw InvalidArgument("keep", "must have one entry per edge");
+    }
+  });
+  const auto kept = order.from_file(std::vector<char>(keep.begin(), keep.end()));
+  return Graph(detail::filter_edges(*state_, kept));
 }
 
 std::vector<FileOrderEdge> Graph::edges() const {

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <thread>
 
+#include <sys/resource.h>
+
 #include "isotherm/base/error.hpp"
 
 namespace isotherm::spectral::distributed {
@@ -57,6 +59,14 @@ Session::~Session() {
 
 int Session::rank() const noexcept { return state_->comm.rank; }
 int Session::size() const noexcept { return state_->comm.size; }
+
+std::int64_t Session::sum(std::int64_t mine) const { return detail::sum(state_->comm, mine); }
+
+std::int64_t Session::peak_memory() const {
+  struct rusage usage = {};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return detail::most(state_->comm, std::int64_t{1024} * usage.ru_maxrss);
+}
 
 void Session::together(const std::function<void()>& work) const {
   detail::together(state_->comm, work);

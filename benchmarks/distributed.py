@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+"""Runs isotherm-mpi on growing graphs and numbers of ranks beside one machine's engine, and
+prints tables of time, memory, work and what ranks sent.
+
+usage: distributed.py BUILD [--graph NAME ...] [--ranks N ...] [--task embed|heat ...]
+
+BUILD is a build folder with isotherm-mpi and engine_report (preset mpi with
+-DISOTHERM_BUILD_BENCHMARKS=ON). Work, messages and bytes are those that PETSc's log counts; they
+do not depend on what else the machine does, as times do.
+"""
+
+import argparse
+import json
+import os
+import random
+import re
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+SCALES = ["10", "1"]
+TOLERANCE = "1e-4"
+PAIRS = 1000
+DIMENSIONS = "5"
+ENVIRONMENT = {
+    "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
+    "OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1"}
+
+
+def poses(count):
+    """A path with a tenth as many loops, most of them between poses of about the same time."""
+    chance = random.Random(1)
+    for pose in range(count - 1):
+        yield pose, pose + 1
+    for _ in range(count // 10):
+        pose = chance.randrange(count)
+        yield pose, (pose + chance.randrange(2, 2000)) % count
+
+
+def mesh(width):
+    for vertex in range(width * width):
+        if (vertex + 1) % width:
+            yield vertex, vertex + 1
+        if vertex + width < width * width:
+            yield vertex, vertex + width
+
+
+def triangles(width):
+    """A mesh of triangles: three edges a vertex."""
+    for vertex in range(width * width):
+        right = (vertex + 1) % width != 0
+        if right:
+            yield vertex, vertex + 1
+        if vertex + width < width * width:
+            yield vertex, vertex + width
+            if right:
+                yield vertex, vertex + width + 1
+
+
+GRAPHS = {
+    "poses 10^5": lambda: poses(10**5),
+    "poses 10^6": lambda: poses(10**6),
+    "mesh 300 x 300": lambda: mesh(300),
+    "mesh 1000 x 1000": lambda: mesh(1000),
+    "triangles 3163 x 3163": lambda: triangles(3163),
+}
+
+
+def write_rows(path, edges):
+    with open(path, "w") as file:
+        for start, end in edges:
+            file.write(f"{start} {end}\n")
+
+
+def write_inputs(folder, name):
+    graph, pairs = folder / "graph", folder / "pairs"
+    write_rows(graph, GRAPHS[name]())
+    chance, kept = random.Random(2), []
+    for number, edge in enumerate(GRAPHS[name]()):
+        if number < PAIRS:
+            kept.append(edge)
+        elif chance.randrange(number + 1) < PAIRS:
+            kept[chance.randrange(PAIRS)] = edge
+    write_rows(pairs, kept)
+    return graph, pairs
+
+
+def logged(text):
+    """Work, messages and bytes a rank, from the head of PETSc's log."""
+    def row(name):
+        found = re.search(rf"^{name}:\s+(\S+)\s+\S+\s+(\S+)\s+(\S+)", text, re.MULTILINE)
+        return [float(value) for value in found.groups()] if found else [0.0, 0.0, 0.0]
+    return {"flop": row("Flop"), "messages": row(r"MPI Msg Count"),
+            "bytes": row(r"MPI Msg Len \(bytes\)")}
+
+
+def on_one_machine(build, task, graph, pairs):
+    words = [DIMENSIONS] if task == "embed" else [pairs, TOLERANCE, *SCALES]
+    done = subprocess.run([build / "benchmarks/engine_report", graph, task, *words],
+                          capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+def on_ranks(build, ranks, task, graph, pairs):
+    words = (["--dimensions", DIMENSIONS] if task == "embed" else
+             ["--pairs", pairs, "--tolerance", TOLERANCE, "--scales", ",".join(SCALES)])
+    log = graph.parent / "log"
+    began = time.monotonic()
+    done = subprocess.run(
+        ["mpirun", "-n", str(ranks), build / "apps/isotherm-mpi", task, graph, *words, "-q",
+         "-o", "/dev/null", "--json", "-"],
+        capture_output=True, text=True,
+        env={**os.environ, **ENVIRONMENT, "PETSC_OPTIONS": f"-log_view :{log}"})
+    if done.returncode not in (0, 4):
+        raise RuntimeError(done.stderr)
+    result = json.loads(done.stdout)
+    return {"all": time.monotonic() - began, **result, **logged(log.read_text())}
+
+
+def row_of(name, ranks, result):
+    flop, messages, sent = result["flop"], result["messages"], result["bytes"]
+    return (f"| {name} | {ranks} | {result['seconds']:.1f} | {result['all']:.1f} "
+            f"| {result['graph']['peak_megabytes_of_a_rank']} | {100 * result['graph']['cut']:.3f} "
+            f"| {flop[0]:.2e} | {messages[1]:.0f} | {sent[1] / 1e6:.2f} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=lambda text: Path(text).resolve())
+    parser.add_argument("--graph", nargs="+", choices=GRAPHS, default=list(GRAPHS)[:4])
+    parser.add_argument("--ranks", nargs="+", type=int, default=[1, 2])
+    parser.add_argument("--task", nargs="+", choices=["embed", "heat"], default=["embed", "heat"])
+    parser.add_argument("--no-serial", action="store_true")
+    arguments = parser.parse_args()
+    print(f"load average {os.getloadavg()[0]:.1f}, {os.cpu_count()} cores", flush=True)
+    for task in arguments.task:
+        print(f"\n### {task}\n\n| graph | ranks | seconds | with reading | MB a rank, most "
+              "| edges cut % | flop a rank, most | messages a rank | MB sent a rank |\n"
+              "|---|---|---|---|---|---|---|---|---|", flush=True)
+        for name in arguments.graph:
+            with tempfile.TemporaryDirectory() as scratch:
+                graph, pairs = write_inputs(Path(scratch), name)
+                if not arguments.no_serial:
+                    one = on_one_machine(arguments.build, task, graph, pairs)
+                    print(f"| {name} | one machine's engine | {one['seconds']:.1f} "
+                          f"| {one['all']:.1f} | {one['megabytes']} | | | | |", flush=True)
+                for ranks in arguments.ranks:
+                    print(row_of(name, ranks, on_ranks(arguments.build, ranks, task, graph, pairs)),
+                          flush=True)
+
+
+if __name__ == "__main__":
+    main()
