@@ -2,7 +2,7 @@
 """Runs isotherm-mpi on growing graphs and numbers of ranks beside one machine's engine, and
 prints tables of time, memory, work and what ranks sent.
 
-usage: distributed.py BUILD [--graph NAME ...] [--ranks N ...] [--task embed|heat ...]
+usage: distributed.py BUILD [--graph NAME ...] [--ranks N ...] [--task NAME ...]
 
 BUILD is a build folder with isotherm-mpi and engine_report (preset mpi with
 -DISOTHERM_BUILD_BENCHMARKS=ON). Work, messages and bytes are those that PETSc's log counts; they
@@ -22,7 +22,9 @@ from pathlib import Path
 SCALES = ["10", "1"]
 TOLERANCE = "1e-4"
 PAIRS = 1000
+FAR = "1000"  # a scale at which heat gets further than a rank's share of a small graph
 DIMENSIONS = "5"
+TASKS = ["embed", "lobpcg", "heat", "far"]
 ENVIRONMENT = {
     "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
     "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
@@ -74,42 +76,49 @@ def write_rows(path, edges):
             file.write(f"{start} {end}\n")
 
 
-def write_inputs(folder, name):
+def write_inputs(folder, name, pair_count):
     graph, pairs = folder / "graph", folder / "pairs"
     write_rows(graph, GRAPHS[name]())
     chance, kept = random.Random(2), []
     for number, edge in enumerate(GRAPHS[name]()):
-        if number < PAIRS:
+        if number < pair_count:
             kept.append(edge)
-        elif chance.randrange(number + 1) < PAIRS:
-            kept[chance.randrange(PAIRS)] = edge
+        elif chance.randrange(number + 1) < pair_count:
+            kept[chance.randrange(pair_count)] = edge
     write_rows(pairs, kept)
     return graph, pairs
 
 
 def logged(text):
-    """Work, messages and bytes a rank, from the head of PETSc's log."""
-    def row(name):
-        found = re.search(rf"^{name}:\s+(\S+)\s+\S+\s+(\S+)\s+(\S+)", text, re.MULTILINE)
-        return [float(value) for value in found.groups()] if found else [0.0, 0.0, 0.0]
-    return {"flop": row("Flop"), "messages": row(r"MPI Msg Count"),
-            "bytes": row(r"MPI Msg Len \(bytes\)")}
+    """Work, messages and bytes of the rank that has most, from the head of PETSc's log."""
+    def most(name):
+        found = re.search(rf"^{name}:\s+(\S+)", text, re.MULTILINE)
+        return float(found.group(1)) if found else 0.0
+    return {"flop": most("Flops"), "messages": most(r"MPI Msg Count"),
+            "bytes": most(r"MPI Msg Len \(bytes\)"), "reductions": most("MPI Reductions")}
 
 
 def on_one_machine(build, task, graph, pairs):
-    words = [DIMENSIONS] if task == "embed" else [pairs, TOLERANCE, *SCALES]
-    done = subprocess.run([build / "benchmarks/engine_report", graph, task, *words],
+    words = {"embed": ["embed", DIMENSIONS], "lobpcg": ["embed", DIMENSIONS],
+             "heat": ["heat", pairs, TOLERANCE, *SCALES],
+             "far": ["heat", pairs, TOLERANCE, FAR]}[task]
+    done = subprocess.run([build / "benchmarks/engine_report", graph, *words],
                           capture_output=True, text=True, check=True)
     return json.loads(done.stdout)
 
 
 def on_ranks(build, ranks, task, graph, pairs):
-    words = (["--dimensions", DIMENSIONS] if task == "embed" else
-             ["--pairs", pairs, "--tolerance", TOLERANCE, "--scales", ",".join(SCALES)])
+    heat = ["--pairs", pairs, "--tolerance", TOLERANCE, "--scales"]
+    verb, words = {
+        "embed": ("embed", ["--dimensions", DIMENSIONS]),
+        "lobpcg": ("embed", ["--dimensions", DIMENSIONS, "--eigen-solver", "lobpcg"]),
+        "heat": ("heat", [*heat, ",".join(SCALES)]),
+        "far": ("heat", [*heat, FAR]),
+    }[task]
     log = graph.parent / "log"
     began = time.monotonic()
     done = subprocess.run(
-        ["mpirun", "-n", str(ranks), build / "apps/isotherm-mpi", task, graph, *words, "-q",
+        ["mpirun", "-n", str(ranks), build / "apps/isotherm-mpi", verb, graph, *words, "-q",
          "-o", "/dev/null", "--json", "-"],
         capture_output=True, text=True,
         env={**os.environ, **ENVIRONMENT, "PETSC_OPTIONS": f"-log_view :{log}"})
@@ -120,10 +129,10 @@ def on_ranks(build, ranks, task, graph, pairs):
 
 
 def row_of(name, ranks, result):
-    flop, messages, sent = result["flop"], result["messages"], result["bytes"]
     return (f"| {name} | {ranks} | {result['seconds']:.1f} | {result['all']:.1f} "
             f"| {result['graph']['peak_megabytes_of_a_rank']} | {100 * result['graph']['cut']:.3f} "
-            f"| {flop[0]:.2e} | {messages[1]:.0f} | {sent[1] / 1e6:.2f} |")
+            f"| {result['flop']:.2e} | {result['messages']:.0f} | {result['bytes'] / 1e6:.2f} "
+            f"| {result['reductions']:.0f} |")
 
 
 def main():
@@ -132,21 +141,22 @@ def main():
     parser.add_argument("build", type=lambda text: Path(text).resolve())
     parser.add_argument("--graph", nargs="+", choices=GRAPHS, default=list(GRAPHS)[:4])
     parser.add_argument("--ranks", nargs="+", type=int, default=[1, 2])
-    parser.add_argument("--task", nargs="+", choices=["embed", "heat"], default=["embed", "heat"])
+    parser.add_argument("--task", nargs="+", choices=TASKS, default=TASKS)
+    parser.add_argument("--pairs", type=int, default=PAIRS)
     parser.add_argument("--no-serial", action="store_true")
     arguments = parser.parse_args()
     print(f"load average {os.getloadavg()[0]:.1f}, {os.cpu_count()} cores", flush=True)
     for task in arguments.task:
         print(f"\n### {task}\n\n| graph | ranks | seconds | with reading | MB a rank, most "
-              "| edges cut % | flop a rank, most | messages a rank | MB sent a rank |\n"
-              "|---|---|---|---|---|---|---|---|---|", flush=True)
+              "| edges cut % | flop a rank | messages a rank | MB sent a rank | reductions |\n"
+              "|---|---|---|---|---|---|---|---|---|---|", flush=True)
         for name in arguments.graph:
             with tempfile.TemporaryDirectory() as scratch:
-                graph, pairs = write_inputs(Path(scratch), name)
+                graph, pairs = write_inputs(Path(scratch), name, arguments.pairs)
                 if not arguments.no_serial:
                     one = on_one_machine(arguments.build, task, graph, pairs)
                     print(f"| {name} | one machine's engine | {one['seconds']:.1f} "
-                          f"| {one['all']:.1f} | {one['megabytes']} | | | | |", flush=True)
+                          f"| {one['all']:.1f} | {one['megabytes']} | | | | | |", flush=True)
                 for ranks in arguments.ranks:
                     print(row_of(name, ranks, on_ranks(arguments.build, ranks, task, graph, pairs)),
                           flush=True)

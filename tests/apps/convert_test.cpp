@@ -58,6 +58,9 @@ TEST_F(Convert, RangesAndGraphs) {
       "%%MatrixMarket matrix coordinate real symmetric\n3 3 2\n2 1 0.5\n3 2 2\n";
   EXPECT_EQ(converted(matrix, "--to edges"), "from,to,weight\n1,2,0.5\n2,3,2\n");
   EXPECT_EQ(converted("1,2,0.5\n2,3,2\n", "--to matrix-market"), matrix);
+  const auto binary = converted("7,2,0.5\n2,3,2\n", "--to binary-graph");
+  EXPECT_EQ(binary.size(), 32u + 3 * 8 + 2 * 16);
+  EXPECT_EQ(converted(binary, "--to edges"), "from,to,weight\n7,2,0.5\n2,3,2\n");
 }
 
 TEST_F(Convert, TakesTheFormatFromTheNameAndCompresses) {
