@@ -22,7 +22,7 @@ from pathlib import Path
 SCALES = ["10", "1"]
 TOLERANCE = "1e-4"
 PAIRS = 1000
-FAR = "1000"  # a scale at which heat gets further than a rank's share of a small graph
+FAR, FINE = "1000", "1e-9"  # heat that gets further than a rank's share of a small graph
 DIMENSIONS = "5"
 TASKS = ["embed", "lobpcg", "heat", "far"]
 ENVIRONMENT = {
@@ -90,18 +90,24 @@ def write_inputs(folder, name, pair_count):
 
 
 def logged(text):
-    """Work, messages and bytes of the rank that has most, from the head of PETSc's log."""
+    """Work and messages of the rank that has most; products with the matrix, and what all ranks
+    together send for one."""
     def most(name):
         found = re.search(rf"^{name}:\s+(\S+)", text, re.MULTILINE)
         return float(found.group(1)) if found else 0.0
-    return {"flop": most("Flops"), "messages": most(r"MPI Msg Count"),
-            "bytes": most(r"MPI Msg Len \(bytes\)"), "reductions": most("MPI Reductions")}
+    # Name, count, ratio, time, ratio, flop, ratio, then messages of all ranks and their mean length.
+    products = re.findall(r"^Mat(?:Mat)?Mult(?:Num)?\s+(\d+)(?:\s+\S+){5}\s+(\S+)\s+(\S+)", text,
+                          re.MULTILINE)
+    count = sum(int(row[0]) for row in products)
+    sent = sum(float(row[1]) * float(row[2]) for row in products)
+    return {"flop": most("Flops"), "messages": most(r"MPI Msg Count"), "products": count,
+            "bytes": sent / max(1, count), "reductions": most("MPI Reductions")}
 
 
 def on_one_machine(build, task, graph, pairs):
     words = {"embed": ["embed", DIMENSIONS], "lobpcg": ["embed", DIMENSIONS],
              "heat": ["heat", pairs, TOLERANCE, *SCALES],
-             "far": ["heat", pairs, TOLERANCE, FAR]}[task]
+             "far": ["heat", pairs, FINE, FAR]}[task]
     done = subprocess.run([build / "benchmarks/engine_report", graph, *words],
                           capture_output=True, text=True, check=True)
     return json.loads(done.stdout)
@@ -113,7 +119,7 @@ def on_ranks(build, ranks, task, graph, pairs):
         "embed": ("embed", ["--dimensions", DIMENSIONS]),
         "lobpcg": ("embed", ["--dimensions", DIMENSIONS, "--eigen-solver", "lobpcg"]),
         "heat": ("heat", [*heat, ",".join(SCALES)]),
-        "far": ("heat", [*heat, FAR]),
+        "far": ("heat", ["--pairs", pairs, "--tolerance", FINE, "--scales", FAR]),
     }[task]
     log = graph.parent / "log"
     began = time.monotonic()
@@ -131,8 +137,9 @@ def on_ranks(build, ranks, task, graph, pairs):
 def row_of(name, ranks, result):
     return (f"| {name} | {ranks} | {result['seconds']:.1f} | {result['all']:.1f} "
             f"| {result['graph']['peak_megabytes_of_a_rank']} | {100 * result['graph']['cut']:.3f} "
-            f"| {result['flop']:.2e} | {result['messages']:.0f} | {result['bytes'] / 1e6:.2f} "
-            f"| {result['reductions']:.0f} |")
+            f"| {result['flop']:.2e} | {result['messages']:.0f} "
+            f"| {result['reductions']:.0f} | {result['products']} "
+            f"| {result['bytes'] / ranks:.0f} |")
 
 
 def main():
@@ -148,15 +155,16 @@ def main():
     print(f"load average {os.getloadavg()[0]:.1f}, {os.cpu_count()} cores", flush=True)
     for task in arguments.task:
         print(f"\n### {task}\n\n| graph | ranks | seconds | with reading | MB a rank, most "
-              "| edges cut % | flop a rank | messages a rank | MB sent a rank | reductions |\n"
-              "|---|---|---|---|---|---|---|---|---|---|", flush=True)
+              "| edges cut % | flop a rank | messages a rank | reductions | products | "
+              "bytes a product and rank |\n"
+              "|---|---|---|---|---|---|---|---|---|---|---|", flush=True)
         for name in arguments.graph:
             with tempfile.TemporaryDirectory() as scratch:
                 graph, pairs = write_inputs(Path(scratch), name, arguments.pairs)
                 if not arguments.no_serial:
                     one = on_one_machine(arguments.build, task, graph, pairs)
                     print(f"| {name} | one machine's engine | {one['seconds']:.1f} "
-                          f"| {one['all']:.1f} | {one['megabytes']} | | | | | |", flush=True)
+                          f"| {one['all']:.1f} | {one['megabytes']} | | | | | | |", flush=True)
                 for ranks in arguments.ranks:
                     print(row_of(name, ranks, on_ranks(arguments.build, ranks, task, graph, pairs)),
                           flush=True)

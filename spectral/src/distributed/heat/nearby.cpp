@@ -24,17 +24,37 @@ struct Ball {
   }
 };
 
-IsHandle rows_around(const Graph::State& graph, std::vector<Index> rows, int reach) {
-  IsHandle around;
+/// Rows within some steps of others, and whether these are all that can be reached.
+struct Around {
+  IsHandle rows;
+  bool all = false;
+};
+
+std::size_t size_of(IS set) {
+  PetscInt size = 0;
+  check(ISGetLocalSize(set, &size));
+  return static_cast<std::size_t>(size);
+}
+
+/// Collective, whoever has rows to ask for. Ends early where no rank's rows grow any more but for
+/// those with more than `budget` of them.
+Around rows_around(const Graph::State& graph, const std::vector<Index>& rows, int reach,
+                   std::size_t budget) {
+  IS set = nullptr;
   check(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(rows.size()), rows.data(),
-                        PETSC_COPY_VALUES, around.out()));
-  IS raw = around.get();
-  check(ISSortRemoveDups(raw));
-  IS grown = raw;
-  check(PetscObjectReference(reinterpret_cast<PetscObject>(raw)));
-  check(MatIncreaseOverlap(graph.laplacian.get(), 1, &grown, reach));
-  check(ISSort(grown));
-  *around.out() = grown;
+                        PETSC_COPY_VALUES, &set));
+  Around around;
+  *around.rows.out() = set;
+  check(ISSortRemoveDups(set));
+  for (int left = reach; left > 0; left -= kFirstReach) {
+    const auto before = size_of(set);
+    check(PetscObjectReference(reinterpret_cast<PetscObject>(set)));
+    check(MatIncreaseOverlap(graph.laplacian.get(), 1, &set, std::min(left, kFirstReach)));
+    *around.rows.out() = set;
+    around.all = size_of(set) == before;
+    if (!any(graph.comm(), !around.all && size_of(set) <= budget)) break;
+  }
+  check(ISSort(set));
   return around;
 }
 
@@ -110,11 +130,6 @@ class Nearby {
       return queries[a].rows.from < queries[b].rows.from;
     });
     batch_ = open_.size();
-    // One rank has all that can be reached.
-    if (graph.comm().size == 1) {
-      reach_ = goal.max_steps;
-      budget_ = queries.empty() ? 0 : static_cast<std::size_t>(graph.rows.total());
-    }
   }
 
   bool done() const { return open_.empty() && later_.empty(); }
@@ -126,19 +141,19 @@ class Nearby {
     // All ranks grow what they ask for by as many steps.
     if (!any(graph_.comm(), !open_.empty())) look_further();
     batch_ = std::min(batch_, open_.size());
-    auto set = graph_.comm().size == 1 ? everything() : rows_around(graph_, ends(), reach_);
-    PetscInt size = 0;
-    check(ISGetLocalSize(set.get(), &size));
-    const bool fits = static_cast<std::size_t>(size) <= budget_;
+    auto around =
+        graph_.comm().size == 1 ? everything() : rows_around(graph_, ends(), reach_, budget_);
+    const auto size = size_of(around.rows.get());
+    const bool fits = size <= budget_;
     if (!fits) {
       const PetscInt nothing = 0;
-      check(ISCreateGeneral(PETSC_COMM_SELF, 0, &nothing, PETSC_COPY_VALUES, set.out()));
+      check(ISCreateGeneral(PETSC_COMM_SELF, 0, &nothing, PETSC_COPY_VALUES, around.rows.out()));
     }
-    const Ball ball = bring(graph_, set.get());
+    const Ball ball = bring(graph_, around.rows.get());
     if (fits) {
-      answer(ball);
+      answer(ball, around.all ? goal_.max_steps : reach_);
     } else {
-      give_up_or_halve();
+      ask_for_less(static_cast<double>(size));
     }
   }
 
@@ -149,11 +164,13 @@ class Nearby {
     reach_ = std::min(2 * reach_, goal_.max_steps);
   }
 
-  IsHandle everything() const {
-    IsHandle all;
+  // One rank has all that can be reached.
+  Around everything() const {
+    Around all;
+    all.all = true;
     check(ISCreateStride(PETSC_COMM_SELF,
                          open_.empty() ? 0 : static_cast<PetscInt>(graph_.rows.total()), 0, 1,
-                         all.out()));
+                         all.rows.out()));
     return all;
   }
 
@@ -166,31 +183,38 @@ class Nearby {
     return rows;
   }
 
-  void answer(const Ball& ball) {
+  void answer(const Ball& ball, int most_steps) {
     HeatBracketer bracketer(ball.laplacian, goal_.tolerance);
     HeatGoal goal = goal_;
-    goal.max_steps = reach_;
+    goal.max_steps = most_steps;
     for (std::size_t k = 0; k < batch_; ++k) {
       auto& query = queries_[open_.back()];
       query.steps =
           bracketer.run({ball.of(query.rows.from), ball.of(query.rows.to)}, goal, query.values);
       // A run that ended only because it may go no further would end elsewhere on one machine.
-      const bool cut_short = query.steps >= reach_ && reach_ < goal_.max_steps;
+      const bool cut_short = query.steps >= most_steps && most_steps < goal_.max_steps;
       if (cut_short) later_.push_back(open_.back());
       if (!cut_short) ++answered_;
       open_.pop_back();
     }
-    batch_ = open_.size();
+    batch_ *= 2;
+    hopeless_ = 1;
   }
 
-  void give_up_or_halve() {
+  /// Fewer pairs next time, about as many as there is room for. Where one alone is too many it
+  /// reaches too far, and so do its neighbours as it seems: twice as many each time in a row.
+  void ask_for_less(double size) {
     if (batch_ > 1) {
-      batch_ /= 2;
+      const double share = static_cast<double>(budget_) / size;
+      const auto fitting = static_cast<std::size_t>(share * static_cast<double>(batch_));
+      batch_ = std::clamp<std::size_t>(fitting, 1, batch_ / 2);
       return;
     }
-    far_.push_back(open_.back());
-    open_.pop_back();
-    batch_ = open_.size();
+    for (std::size_t k = 0; k < hopeless_ && !open_.empty(); ++k) {
+      far_.push_back(open_.back());
+      open_.pop_back();
+    }
+    hopeless_ *= 2;
   }
 
   const Graph::State& graph_;
@@ -198,6 +222,7 @@ class Nearby {
   std::vector<HeatQuery>& queries_;
   std::vector<std::size_t> open_, later_, far_;  // places of queries; the last are next
   std::size_t batch_ = 0;                        // so many of the open ones at once
+  std::size_t hopeless_ = 1;                     // pairs to give up if one is too many
   std::size_t budget_ = 0;                       // rows
   int reach_ = kFirstReach;
   std::int64_t answered_ = 0;
