@@ -1,7 +1,6 @@
 #pragma once
 
-#include <limits>
-#include <set>
+#include <array>
 #include <vector>
 
 #include "isotherm/slam/prune/consensus.hpp"
@@ -31,17 +30,16 @@ class Climb {
   /// Nothing accepted, the covariances as stated.
   Explanation<Pose> nothing();
 
-  /// What each loop is worth given all others of an explanation.
-  std::vector<Standing> standings(const Explanation<Pose>& explanation);
-
   /// What the climbs did, and whether all ended.
   const std::vector<ConsensusMove>& moves() const noexcept { return moves_; }
   bool settled() const noexcept { return settled_; }
 
  private:
   void start(const CovarianceScale& scale);
-  bool seen_before() const;
-  void grow();
+  const Explanation<Pose>* peak_ahead(bool learnt);
+  bool outdoes(const Explanation<Pose>& peak);
+  double summit() const;
+  const Explanation<Pose>* grow();
   bool move();
   void assess();
   std::size_t accepted_count() const;
@@ -51,7 +49,9 @@ class Climb {
   Group next_batch() const;
   void accept(const Selection& loops);
   bool learn_more_than(double gain);
-  bool try_lesson(const Lesson<Pose>& lesson);
+  bool weigh_otherwise();
+  bool try_scales(const CovarianceScale& scale, const Shapes<Pose>& shapes,
+                  const ScaleShares& shares);
   void predict_runs();
   void note(std::size_t accepted, std::size_t dropped);
   void tell_progress() const;
@@ -62,11 +62,11 @@ class Climb {
   Assessment<Pose> assessment_;
   Explanation<Pose> now_;
   Explanation<Pose> best_;
-  std::vector<double> run_density_;    // log p(z | the loop before in its run)
-  std::set<std::vector<bool>> peaks_;  // loops with which climbs ended
-  double summit_ = -std::numeric_limits<double>::infinity();  // the highest peak
-  std::vector<bool> dropped_;    // since the climb last rose; not tried again
-  std::size_t learnt_from_ = 0;  // loops, at the last lesson
+  std::vector<double> run_density_;       // log p(z | the loop before in its run)
+  std::vector<Explanation<Pose>> peaks_;  // of earlier climbs
+  std::vector<bool> dropped_;             // since the climb last rose; not tried again
+  std::size_t learnt_from_ = 0;           // loops, at the last lesson
+  std::array<bool, 2> failed_{};          // lessons here, with shapes and without
   std::vector<ConsensusMove> moves_;
   bool settled_ = true;
 };
