@@ -1,7 +1,6 @@
 #include "prune/consensus/judge.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -12,6 +11,7 @@
 #include "graph/candidate_verdicts.hpp"
 #include "isotherm/base/error.hpp"
 #include "prune/consensus/climb/climb.hpp"
+#include "prune/consensus/climb/starts.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
 #include "prune/consensus/objective/log_sum.hpp"
 
@@ -22,10 +22,6 @@ using detail::Explanation;
 using detail::log_sum;
 using spectral::Verdict;
 
-// Factors on the stated covariances of odometry and of loops to start from. What is true agrees
-// best: a climb that starts from sharper loops than stated is not drawn to false ones first.
-const std::array<detail::CovarianceScale, 4> kStarts = {
-    {{1.0, 1.0}, {100.0, 1.0}, {1.0, 0.01}, {0.01, 0.01}}};
 constexpr double kNegligible = -20.0;  // log weight of an explanation
 
 // Fewer loops say too little of how accurate odometry is for one of them to be pruned.
@@ -36,7 +32,7 @@ constexpr std::size_t kFewLoops = 5;
 template <class Pose>
 std::vector<Explanation<Pose>> explanations(detail::Climb<Pose>& climb, bool calibrate) {
   std::vector<Explanation<Pose>> found = {climb.nothing()};
-  for (const auto& start : kStarts) {
+  for (const auto& start : detail::kStarts) {
     try {
       found.push_back(climb.from(start));
     } catch (const NumericalError&) {

@@ -48,6 +48,20 @@ Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
   return best_;
 }
 
+// Grows to them first, the most certain before the rest, so that poses come near.
+template <class Pose>
+Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
+                                          const CovarianceScale& start_scale) {
+  start(start_scale);
+  for (std::size_t k = 0; k < accepted.size(); ++k) dropped_[k] = !accepted[k];
+  grow();
+  now_.accepted = accepted;
+  assess();
+  while (learn_more_than(0.0) || weigh_otherwise()) {
+  }
+  return now_;
+}
+
 template <class Pose>
 Explanation<Pose> Climb<Pose>::nothing() {
   start({});

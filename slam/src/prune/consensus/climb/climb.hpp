@@ -27,6 +27,9 @@ class Climb {
   /// explanation on the way.
   Explanation<Pose> from(const CovarianceScale& start);
 
+  /// What explains best that exactly these loops are true, from `start`.
+  Explanation<Pose> settled_on(const std::vector<bool>& accepted, const CovarianceScale& start);
+
   /// Nothing accepted, the covariances as stated.
   Explanation<Pose> nothing();
 
