@@ -155,9 +155,12 @@ template <class Pose>
 bool Climb<Pose>::weigh_otherwise() {
   const double redundancy = now_.redundancy.odometry.sum() + now_.redundancy.loops.sum();
   if (!options_.calibrate || redundancy < 1.0) return false;  // nothing tells
-  for (const double factor : {kOtherwise, 1.0 / kOtherwise}) {
+  for (const Trial trial : {Trial::wider_loops, Trial::sharper_loops}) {
+    if (failed_[trial]) continue;
+    const double factor = trial == Trial::wider_loops ? kOtherwise : 1.0 / kOtherwise;
     const CovarianceScale scale{now_.scale.odometry, now_.scale.loops * factor};
     if (try_scales(scale, now_.shapes, now_.shares)) return true;
+    failed_[trial] = true;
   }
   return false;
 }
@@ -228,21 +231,19 @@ void Climb<Pose>::accept(const Selection& loops) {
   note(loops.size(), 0);
 }
 
-// Whether there was anything to learn that gains more than this. What failed once is not tried
-// again until something else has changed.
+// Whether there was anything to learn that gains more than this.
 template <class Pose>
 bool Climb<Pose>::learn_more_than(double gain) {
   if (!options_.calibrate) return false;
   learnt_from_ = std::max<std::size_t>(accepted_count(), 1);
   const double telling = kTelling * static_cast<double>(accepted_count());
   const double least = std::max({gain, kBetter, telling});
-  for (bool& failed : failed_) {
-    if (failed) continue;
-    const bool same_shapes = &failed != failed_.data();
-    const Lesson<Pose> lesson = learn(assessment_, now_, same_shapes);
-    if (lesson.gain <= least) continue;
-    if (try_scales(lesson.scale, lesson.shapes, lesson.shares)) return true;
-    failed = true;
+  for (const Trial trial : {Trial::lesson, Trial::lesson_of_scales}) {
+    if (failed_[trial]) continue;
+    const Lesson<Pose> found = learn(assessment_, now_, trial == Trial::lesson_of_scales);
+    if (found.gain <= least) continue;
+    if (try_scales(found.scale, found.shapes, found.shares)) return true;
+    failed_[trial] = true;
   }
   return false;
 }

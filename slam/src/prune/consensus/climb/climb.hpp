@@ -38,6 +38,8 @@ class Climb {
   bool settled() const noexcept { return settled_; }
 
  private:
+  enum Trial { lesson, lesson_of_scales, wider_loops, sharper_loops };
+
   void start(const CovarianceScale& scale);
   const Explanation<Pose>* peak_ahead(bool learnt);
   bool outdoes(const Explanation<Pose>& peak);
@@ -69,7 +71,7 @@ class Climb {
   std::vector<Explanation<Pose>> peaks_;  // of earlier climbs
   std::vector<bool> dropped_;             // since the climb last rose; not tried again
   std::size_t learnt_from_ = 0;           // loops, at the last lesson
-  std::array<bool, 2> failed_{};          // lessons here, with shapes and without
+  std::array<bool, 4> failed_{};  // trials of other scales here; not repeated until a change
   std::vector<ConsensusMove> moves_;
   bool settled_ = true;
 };
