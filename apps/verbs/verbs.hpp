@@ -22,6 +22,7 @@ Verb add_report(CLI::App& root);
 Verb add_completion(CLI::App& root);
 Verb add_manual(CLI::App& root);
 Verb add_eval(CLI::App& root);
+Verb add_eval_evidence(CLI::App& eval);
 Verb add_eval_loops(CLI::App& eval);
 Verb add_eval_ate(CLI::App& eval);
 Verb add_eval_rpe(CLI::App& eval);

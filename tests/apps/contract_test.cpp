@@ -17,9 +17,9 @@ using testing::HasSubstr;
 using testing::Not;
 
 constexpr const char* kVerbs[] = {
-    "info",     "simulate city", "corrupt",          "prune",    "label",          "eval loops",
-    "edges",    "embed",         "simulate network", "localize", "eval positions", "optimize",
-    "eval ate", "convert",       "densify"};
+    "info",     "simulate city", "corrupt",          "prune",        "label",          "eval loops",
+    "edges",    "embed",         "simulate network", "localize",     "eval positions", "optimize",
+    "eval ate", "convert",       "densify",          "eval evidence"};
 
 class Contract : public CommandTest {
  protected:

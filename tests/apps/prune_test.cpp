@@ -45,6 +45,21 @@ TEST_F(PruneCommand, FindsFalseLoopsOfASimulatedCity) {
   }
 }
 
+// What consensus leaves explains more than what it pruned, and about as much as the truth.
+TEST_F(PruneCommand, AnswersAreComparedByTheirEvidence) {
+  make_corrupted();
+  const auto evidence_of = [&](const std::string& answer) {
+    const auto json = run_ok("eval evidence bad.g2o " + answer + " --json -");
+    return nlohmann::json::parse(json)["log_evidence"].get<double>();
+  };
+  run_ok("prune bad.g2o --verdicts found.csv");
+  run_ok("prune bad.g2o --method chi2 --verdicts chi2.csv");
+  const double found = evidence_of("--verdicts found.csv");
+  EXPECT_NEAR(found, evidence_of("--labels labels.csv"), 0.02 * found);
+  EXPECT_GE(found, evidence_of("--verdicts chi2.csv") - 1.0);
+  EXPECT_EQ(run("eval evidence bad.g2o").code, 2);
+}
+
 TEST_F(PruneCommand, VerdictsHaveOneRowACandidateInFileOrder) {
   make_corrupted();
   const std::string columns = "edge,from,to,verdict,score,threshold,stage";

@@ -42,6 +42,7 @@
 #include "isotherm/slam/prune/heat_prune.hpp"
 #include "isotherm/slam/prune/induce.hpp"
 #include "isotherm/slam/prune/kernel_prune.hpp"
+#include "isotherm/slam/prune/loop_evidence.hpp"
 #include "isotherm/slam/prune/odometry_chi2.hpp"
 #include "isotherm/slam/prune/pcm.hpp"
 #include "isotherm/slam/prune/prune.hpp"

@@ -1,9 +1,9 @@
 #include "prune/consensus/judge.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +11,7 @@
 #include "graph/candidate_verdicts.hpp"
 #include "isotherm/base/error.hpp"
 #include "prune/consensus/climb/climb.hpp"
+#include "prune/consensus/climb/starts.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
 #include "prune/consensus/objective/log_sum.hpp"
 
@@ -21,10 +22,6 @@ using detail::Explanation;
 using detail::log_sum;
 using spectral::Verdict;
 
-// Factors on the stated covariances of odometry and of loops to start from. What is true agrees
-// best: a climb that starts from sharper loops than stated is not drawn to false ones first.
-const std::array<detail::CovarianceScale, 4> kStarts = {
-    {{1.0, 1.0}, {100.0, 1.0}, {1.0, 0.01}, {0.01, 0.01}}};
 constexpr double kNegligible = -20.0;  // log weight of an explanation
 
 // Fewer loops say too little of how accurate odometry is for one of them to be pruned.
@@ -35,7 +32,7 @@ constexpr std::size_t kFewLoops = 5;
 template <class Pose>
 std::vector<Explanation<Pose>> explanations(detail::Climb<Pose>& climb, bool calibrate) {
   std::vector<Explanation<Pose>> found = {climb.nothing()};
-  for (const auto& start : kStarts) {
+  for (const auto& start : detail::kStarts) {
     try {
       found.push_back(climb.from(start));
     } catch (const NumericalError&) {
@@ -47,29 +44,22 @@ std::vector<Explanation<Pose>> explanations(detail::Climb<Pose>& climb, bool cal
   return found;
 }
 
-// Each loop's log odds by all explanations, by their evidence. One at about the scale of a better
-// one that keeps the same loops is the same peak. `best` is set to what the first says.
+// Each loop's log odds by all explanations, by their evidence; the best is first. One at about the
+// scale of a better one that keeps the same loops is the same peak.
 template <class Pose>
-std::vector<double> mean_log_odds(detail::Climb<Pose>& climb,
-                                  const std::vector<Explanation<Pose>>& found,
-                                  std::vector<detail::Standing>& best) {
-  best = climb.standings(found.front());
-  std::vector<double> log_true;
-  std::vector<double> log_false;
-  for (const auto& standing : best) {
-    log_true.push_back(-log_sum(0.0, -standing.log_odds));
-    log_false.push_back(-log_sum(0.0, standing.log_odds));
-  }
-  for (auto at = found.begin() + 1; at != found.end(); ++at) {
+std::vector<double> mean_log_odds(const std::vector<Explanation<Pose>>& found) {
+  constexpr double kNone = -std::numeric_limits<double>::infinity();
+  std::vector<double> log_true(found.front().standings.size(), kNone);
+  std::vector<double> log_false = log_true;
+  for (auto at = found.begin(); at != found.end(); ++at) {
     const double log_weight = at->evidence - found.front().evidence;
     const bool same = std::any_of(found.begin(), at, [&](const auto& better) {
       return better.accepted == at->accepted &&
              std::abs(std::log(better.scale.odometry / at->scale.odometry)) < 1.0;
     });
     if (same || log_weight < kNegligible) continue;
-    const auto standings = climb.standings(*at);
-    for (std::size_t k = 0; k < standings.size(); ++k) {
-      const double log_odds = standings[k].log_odds;
+    for (std::size_t k = 0; k < log_true.size(); ++k) {
+      const double log_odds = at->standings[k].log_odds;
       log_true[k] = log_sum(log_true[k], log_weight - log_sum(0.0, -log_odds));
       log_false[k] = log_sum(log_false[k], log_weight - log_sum(0.0, log_odds));
     }
@@ -90,11 +80,11 @@ std::string stage_of(bool accepted, const detail::Standing& standing) {
 }
 
 template <class Pose>
-void report(detail::Climb<Pose>& climb, const std::vector<Explanation<Pose>>& found,
-            double significance, ConsensusResult& result) {
+void report(const std::vector<Explanation<Pose>>& found, double significance,
+            ConsensusResult& result) {
   const auto& best = found.front();
-  std::vector<detail::Standing> standings;
-  const auto log_odds = mean_log_odds(climb, found, standings);
+  const auto& standings = best.standings;
+  const auto log_odds = mean_log_odds(found);
   const double decisive = detail::log_odds_of(1.0 - significance);
   const bool many = standings.size() >= kFewLoops;
   for (std::size_t k = 0; k < standings.size(); ++k) {
@@ -135,7 +125,7 @@ ConsensusResult detail::judge_by_evidence(const PoseGraph<Pose>& graph, const Ed
   const auto found = explanations(climb, options.calibrate);
   result.moves = climb.moves();
   result.settled = climb.settled();
-  report(climb, found, options.significance, result);
+  report(found, options.significance, result);
   return result;
 }
 

@@ -19,44 +19,45 @@ constexpr int kFixedPointSteps = 30;
 template <class Pose>
 Assessment<Pose>::Assessment(const Objective<Pose>& objective)
     : objective_(objective),
-      graph_(objective.stated()),
-      estimate_(graph_.reduced),
-      odometry_(estimate_.layout()),
-      standings_(graph_.reduced.loops.size()),
-      covariances_(graph_.reduced.loops.size()) {}
+      found_{.graph = std::make_shared<ScaledGraph<Pose>>(objective.stated())},
+      estimate_(found_.graph->reduced),
+      odometry_(estimate_.layout()) {
+  found_.covariances.resize(graph().loops.size());
+}
 
 template <class Pose>
 void Assessment<Pose>::start_over() {
   estimate_.restore(odometry_);
-  held_.clear();
+  found_.held.clear();
 }
 
 template <class Pose>
-void Assessment<Pose>::restore(const Explanation<Pose>& before) {
+void Assessment<Pose>::restore(const Explanation<Pose>& before, Findings found) {
+  found_ = std::move(found);
+  estimate_.use(found_.graph->reduced);
   estimate_.restore(before.layout);
-  if (held_ != before.accepted) held_.clear();
 }
 
 template <class Pose>
 void Assessment<Pose>::assess(Explanation<Pose>& now) {
   rescale(now.shapes);
-  mixture_ = expected_mixture(now.scale.loops, now.shares);
+  found_.mixture = expected_mixture(now.scale.loops, now.shares);
   find_peak(now);
-  near_ = objective_.near(estimate_.poses());
+  found_.near = objective_.near(estimate_.poses());
   bound(now);
   weigh(now);
-  add_prior(now.accepted);
+  add_prior(now);
   now.layout = estimate_.layout();
-  now.evidence = objective_.evidence(now, graph_, estimate_, near_);
+  now.evidence = objective_.evidence(now, *found_.graph, estimate_, found_.near);
 }
 
 template <class Pose>
 void Assessment<Pose>::rescale(const Shapes<Pose>& shapes) {
-  if (shapes == shapes_) return;
-  graph_ = objective_.scaled(shapes);
-  shapes_ = shapes;
-  estimate_.restore(estimate_.layout());
-  held_.clear();
+  if (shapes == found_.shapes) return;
+  found_.graph = std::make_shared<ScaledGraph<Pose>>(objective_.scaled(shapes));
+  found_.shapes = shapes;
+  estimate_.use(found_.graph->reduced);
+  found_.held.clear();
 }
 
 template <class Pose>
@@ -70,11 +71,11 @@ void Assessment<Pose>::find_peak(Explanation<Pose>& now) {
 template <class Pose>
 void Assessment<Pose>::weigh_new(Explanation<Pose>& now) {
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
-    if (!now.accepted[k] || held_.empty() || held_[k]) continue;
-    const auto& link = graph_.reduced.loops[k];
+    if (!now.accepted[k] || found_.held.empty() || found_.held[k]) continue;
+    const auto& link = graph().loops[k];
     const auto prediction =
-        predict<Pose>(estimate_.residual(link), covariances_[k], link.covariance);
-    now.weights[k] = loop_gain<Pose>(prediction, mixture_).weight;
+        predict<Pose>(estimate_.residual(link), found_.covariances[k], link.covariance);
+    now.weights[k] = loop_gain<Pose>(prediction, found_.mixture).weight;
   }
 }
 
@@ -86,11 +87,11 @@ bool Assessment<Pose>::reweigh(Explanation<Pose>& now) {
   now.scale_evidence = 0.0;
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
     if (!now.accepted[k]) continue;
-    const auto& link = graph_.reduced.loops[k];
+    const auto& link = graph().loops[k];
     const typename Pose::Tangent r = estimate_.residual(link);
     const double chi2 =
         r.dot(link.information * r) / now.scale.loops + uncertainty(now, static_cast<Index>(k));
-    const ErrorScale scale = error_scale(mixture_, chi2, Pose::kDof);
+    const ErrorScale scale = error_scale(found_.mixture, chi2, Pose::kDof);
     changed = changed || std::abs(std::log(scale.weight / now.weights[k])) > kSameWeight;
     now.weights[k] = scale.weight;
     now.scale_evidence += scale.evidence;
@@ -104,10 +105,11 @@ bool Assessment<Pose>::reweigh(Explanation<Pose>& now) {
 // deviations. As of the last assessment; of a loop accepted since, from what the others said.
 template <class Pose>
 double Assessment<Pose>::uncertainty(const Explanation<Pose>& now, Index loop) const {
-  const auto& link = graph_.reduced.loops[loop];
+  const auto& link = graph().loops[loop];
   const auto J = residual_jacobian<Pose>(estimate_.residual(link));
-  const Matrix P = J * covariances_[loop] * J.transpose();
-  if (!held_.empty() && held_[loop]) return (link.information * P).trace() / now.scale.loops;
+  const Matrix P = J * found_.covariances[loop] * J.transpose();
+  if (!found_.held.empty() && found_.held[loop])
+    return (link.information * P).trace() / now.scale.loops;
   const double weight = now.weights[loop];
   const Matrix own = link.covariance * now.scale.loops / weight;
   return Eigen::LLT<Matrix>(own + P).solve(P).trace() / weight;
@@ -117,51 +119,52 @@ double Assessment<Pose>::uncertainty(const Explanation<Pose>& now, Index loop) c
 // same scale is an upper bound; that of odometry alone always is.
 template <class Pose>
 void Assessment<Pose>::bound(const Explanation<Pose>& now) {
-  bool still = !held_.empty() && held_scale_ == now.scale.odometry;
+  bool still = !found_.held.empty() && found_.held_scale == now.scale.odometry;
   for (std::size_t k = 0; still && k < now.accepted.size(); ++k) {
-    still = now.accepted[k] || !held_[k];
+    still = now.accepted[k] || !found_.held[k];
   }
-  for (std::size_t k = 0; !still && k < covariances_.size(); ++k) {
-    covariances_[k] = graph_.reduced.odometry_covariance[k] * now.scale.odometry;
+  for (std::size_t k = 0; !still && k < found_.covariances.size(); ++k) {
+    found_.covariances[k] = graph().odometry_covariance[k] * now.scale.odometry;
   }
-  held_ = now.accepted;
-  held_scale_ = now.scale.odometry;
+  found_.held = now.accepted;
+  found_.held_scale = now.scale.odometry;
 }
 
 // Of those that are hopeless even under the best covariance within their bound it is not solved
 // for.
 template <class Pose>
 void Assessment<Pose>::weigh(Explanation<Pose>& now) {
+  now.standings.resize(now.accepted.size());
   std::vector<Index> loops;
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
     const auto loop = static_cast<Index>(k);
-    if (!now.accepted[k]) standings_[k] = other_standing(now, loop, false);
-    const bool hopeful = standings_[k].connected() && standings_[k].evidence > -kHopeless;
+    if (!now.accepted[k]) now.standings[k] = other_standing(now, loop, false);
+    const bool hopeful = now.standings[k].connected() && now.standings[k].evidence > -kHopeless;
     if (now.accepted[k] || hopeful) loops.push_back(loop);
   }
   const auto covariances = estimate_.relative_covariances(loops);
-  for (std::size_t i = 0; i < loops.size(); ++i) covariances_[loops[i]] = covariances[i];
+  for (std::size_t i = 0; i < loops.size(); ++i) found_.covariances[loops[i]] = covariances[i];
   find_redundancy(now);
   for (const Index k : loops) {
-    standings_[k] = now.accepted[k] ? accepted_standing(now, k) : other_standing(now, k, true);
+    now.standings[k] = now.accepted[k] ? accepted_standing(now, k) : other_standing(now, k, true);
   }
 }
 
 template <class Pose>
 typename Pose::Tangent Assessment<Pose>::redundancy(const Explanation<Pose>& now,
                                                     Index loop) const {
-  const auto& link = graph_.reduced.loops[loop];
+  const auto& link = graph().loops[loop];
   const auto J = residual_jacobian<Pose>(estimate_.residual(link));
-  const Matrix fitted = link.information * J * covariances_[loop] * J.transpose();
+  const Matrix fitted = link.information * J * found_.covariances[loop] * J.transpose();
   return (1.0 - now.weights[loop] / now.scale.loops * fitted.diagonal().array()).max(0.0);
 }
 
 template <class Pose>
 void Assessment<Pose>::find_redundancy(Explanation<Pose>& now) const {
-  auto constraints = static_cast<double>(graph_.reduced.steps.size());
+  auto constraints = static_cast<double>(graph().steps.size());
   now.redundancy = {};
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
-    if (!now.accepted[k] || graph_.reduced.loops[k].a == graph_.reduced.loops[k].b) continue;
+    if (!now.accepted[k] || graph().loops[k].a == graph().loops[k].b) continue;
     now.redundancy.loops += redundancy(now, static_cast<Index>(k));
     constraints += 1.0;
   }
@@ -172,15 +175,15 @@ void Assessment<Pose>::find_redundancy(Explanation<Pose>& now) const {
 // Given all loops but itself, in what is known of the accuracy of odometry, too.
 template <class Pose>
 Standing Assessment<Pose>::accepted_standing(const Explanation<Pose>& now, Index loop) const {
-  const auto& link = graph_.reduced.loops[loop];
+  const auto& link = graph().loops[loop];
   const auto prediction =
-      predict_without<Pose>(estimate_.residual(link), covariances_[loop], link.covariance,
+      predict_without<Pose>(estimate_.residual(link), found_.covariances[loop], link.covariance,
                             now.weights[loop] / now.scale.loops);
   const typename Pose::Tangent own = redundancy(now, loop);
   const Redundancy<Pose> others{
       .odometry = (now.redundancy.odometry.array() - (1.0 - own.array())).max(0.0),
       .loops = (now.redundancy.loops - own).cwiseMax(0.0)};
-  const auto gain = loop_gain<Pose>(prediction, mixture_, objective_.scale_deviation(others));
+  const auto gain = loop_gain<Pose>(prediction, found_.mixture, objective_.scale_deviation(others));
   // Alone it would join parts that lie anywhere on the map.
   const double density = std::max(gain.log_density, -objective_.log_volume() - 0.5 * gain.chi2);
   return {.chi2 = gain.chi2, .evidence = density - log_alternative(loop)};
@@ -189,14 +192,15 @@ Standing Assessment<Pose>::accepted_standing(const Explanation<Pose>& now, Index
 template <class Pose>
 Standing Assessment<Pose>::other_standing(const Explanation<Pose>& now, Index loop,
                                           bool solved) const {
-  const auto& link = graph_.reduced.loops[loop];
+  const auto& link = graph().loops[loop];
   Standing standing{.parts = estimate_.parts(link)};
   double density = -objective_.log_volume();
   if (standing.connected()) {
-    auto prediction = predict<Pose>(estimate_.residual(link), covariances_[loop], link.covariance);
-    if (!solved) prediction = at_best<Pose>(prediction, mixture_.scale);
+    auto prediction =
+        predict<Pose>(estimate_.residual(link), found_.covariances[loop], link.covariance);
+    if (!solved) prediction = at_best<Pose>(prediction, found_.mixture.scale);
     const auto gain =
-        loop_gain<Pose>(prediction, mixture_, objective_.scale_deviation(now.redundancy));
+        loop_gain<Pose>(prediction, found_.mixture, objective_.scale_deviation(now.redundancy));
     standing.chi2 = gain.chi2;
     density = gain.log_density;
   }
@@ -206,16 +210,17 @@ Standing Assessment<Pose>::other_standing(const Explanation<Pose>& now, Index lo
 
 // Of the share of true loops as expected, of which nothing is known before (Beta).
 template <class Pose>
-void Assessment<Pose>::add_prior(const std::vector<bool>& accepted) {
+void Assessment<Pose>::add_prior(Explanation<Pose>& now) const {
+  auto& standings = now.standings;
   double prior = 0.0;
   for (int step = 0; step < kFixedPointSteps; ++step) {
     double kept = 1.0;
-    for (std::size_t k = 0; k < standings_.size(); ++k) {
-      kept += accepted[k] ? 1.0 : 1.0 / (1.0 + std::exp(-standings_[k].evidence - prior));
+    for (std::size_t k = 0; k < standings.size(); ++k) {
+      kept += now.accepted[k] ? 1.0 : 1.0 / (1.0 + std::exp(-standings[k].evidence - prior));
     }
-    prior = std::log(kept / (2.0 + static_cast<double>(standings_.size()) - kept));
+    prior = std::log(kept / (2.0 + static_cast<double>(standings.size()) - kept));
   }
-  for (auto& standing : standings_) standing.log_odds = standing.evidence + prior;
+  for (auto& standing : standings) standing.log_odds = standing.evidence + prior;
 }
 
 template class Assessment<Pose2>;

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
-#include "prune/consensus/climb/standing.hpp"
 #include "prune/consensus/objective/objective.hpp"
+#include "prune/consensus/objective/standing.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -24,13 +25,24 @@ class Assessment {
   /// @throws NumericalError if the normal equations break down
   void assess(Explanation<Pose>& now);
 
-  /// Takes `before`, assessed earlier, as what the next one starts from.
-  void restore(const Explanation<Pose>& before);
+  /// What the next assessment starts from, beside the explanation.
+  struct Findings {
+    Shapes<Pose> shapes;
+    std::shared_ptr<const ScaledGraph<Pose>> graph;  // scaled by those
+    ScaleMixture mixture;
+    typename Objective<Pose>::NearByClass near{};
+    std::vector<Matrix> covariances;  // of T_a^-1 T_b, one a loop; with it where it is accepted
+    std::vector<bool> held;           // loops that the covariances are given, for
+    double held_scale = 0.0;          // of odometry
+  };
+  const Findings& findings() const noexcept { return found_; }
 
-  const std::vector<Standing>& standings() const noexcept { return standings_; }
+  /// Back to where an earlier assessment ended, with what was found there.
+  void restore(const Explanation<Pose>& before, Findings found);
+
   const Estimate<Pose>& estimate() const noexcept { return estimate_; }
 
-  const ReducedGraph<Pose>& graph() const noexcept { return graph_.reduced; }
+  const ReducedGraph<Pose>& graph() const noexcept { return found_.graph->reduced; }
 
   /// How much of each coordinate of an accepted loop is left to tell how accurate it is:
   /// diag(I - w Omega J C J').
@@ -38,7 +50,7 @@ class Assessment {
 
   /// log of the density that a loop's is held against.
   double log_alternative(Index loop) const {
-    return objective_.log_alternative(loop, near_, mixture_.scale, shapes_.loops);
+    return objective_.log_alternative(loop, found_.near, found_.mixture.scale, found_.shapes.loops);
   }
 
  private:
@@ -52,19 +64,12 @@ class Assessment {
   void find_redundancy(Explanation<Pose>& now) const;
   Standing accepted_standing(const Explanation<Pose>& now, Index loop) const;
   Standing other_standing(const Explanation<Pose>& now, Index loop, bool solved) const;
-  void add_prior(const std::vector<bool>& accepted);
+  void add_prior(Explanation<Pose>& now) const;
 
   const Objective<Pose>& objective_;
-  ScaledGraph<Pose> graph_;
-  Shapes<Pose> shapes_;  // that graph_ is scaled by
+  Findings found_;
   Estimate<Pose> estimate_;
   typename Estimate<Pose>::Layout odometry_;
-  ScaleMixture mixture_;
-  typename Objective<Pose>::NearByClass near_{};
-  std::vector<Standing> standings_;
-  std::vector<Matrix> covariances_;  // of T_a^-1 T_b, one a loop; with it where it is accepted
-  std::vector<bool> held_;           // loops that the covariances are given, for
-  double held_scale_ = 0.0;          // of odometry
 };
 
 extern template class Assessment<Pose2>;

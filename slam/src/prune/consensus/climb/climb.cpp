@@ -1,6 +1,7 @@
 #include "prune/consensus/climb/climb.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "isotherm/base/error.hpp"
@@ -11,12 +12,20 @@ namespace {
 
 // Nats by which an explanation must be better to go on, and nats a loop for a lesson to matter.
 constexpr double kBetter = 0.1;
-constexpr double kTelling = 1e-3;
+constexpr double kTelling = 2e-3;
 // Moves in a row that may find nothing better, or nothing that would lead in as many to the highest
 // peak of earlier climbs.
 constexpr int kPatience = 8;
 // Times as many loops have more to tell of how accurate they are.
 constexpr std::size_t kMoreTelling = 2;
+constexpr double kOtherwise = 10.0;  // factor on variances that is worth a try
+
+bool is_part(const std::vector<bool>& part, const std::vector<bool>& whole) {
+  for (std::size_t k = 0; k < part.size(); ++k) {
+    if (part[k] && !whole[k]) return false;
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -32,11 +41,25 @@ Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
   do {
     before = best_.evidence;
     std::fill(dropped_.begin(), dropped_.end(), false);
-    grow();
+    const Explanation<Pose>* known = grow();
+    if (known != nullptr && known->evidence >= best_.evidence) return *known;
   } while (best_.evidence > before + kBetter);
-  peaks_.insert(best_.accepted);
-  summit_ = std::max(summit_, best_.evidence);
-  return std::move(best_);
+  peaks_.push_back(best_);
+  return best_;
+}
+
+// Grows to them first, the most certain before the rest, so that poses come near.
+template <class Pose>
+Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
+                                          const CovarianceScale& start_scale) {
+  start(start_scale);
+  for (std::size_t k = 0; k < accepted.size(); ++k) dropped_[k] = !accepted[k];
+  grow();
+  now_.accepted = accepted;
+  assess();
+  while (learn_more_than(0.0) || weigh_otherwise()) {
+  }
+  return now_;
 }
 
 template <class Pose>
@@ -45,10 +68,34 @@ Explanation<Pose> Climb<Pose>::nothing() {
   return now_;
 }
 
-// Whether an earlier climb ended with these loops: it has learnt what there is to learn from them.
+// That of an earlier climb which holds all loops of this one and explains them better, by scales
+// too where they were `learnt` from them.
 template <class Pose>
-bool Climb<Pose>::seen_before() const {
-  return peaks_.contains(now_.accepted);
+const Explanation<Pose>* Climb<Pose>::peak_ahead(bool learnt) {
+  for (const auto& peak : peaks_) {
+    if (now_.accepted == peak.accepted) {
+      if (!outdoes(peak)) return &peak;
+    } else if (learnt && is_part(now_.accepted, peak.accepted)) {
+      if (try_scales(peak.scale, peak.shapes, peak.shares)) return &peak;
+    }
+  }
+  return nullptr;
+}
+
+// Whether the scales that can be learnt from here explain the same loops better.
+template <class Pose>
+bool Climb<Pose>::outdoes(const Explanation<Pose>& peak) {
+  while (now_.evidence <= peak.evidence) {
+    if (!learn_more_than((peak.evidence - now_.evidence) / kPatience)) return false;
+  }
+  return true;
+}
+
+template <class Pose>
+double Climb<Pose>::summit() const {
+  double summit = -std::numeric_limits<double>::infinity();
+  for (const auto& peak : peaks_) summit = std::max(summit, peak.evidence);
+  return summit;
 }
 
 template <class Pose>
@@ -65,28 +112,25 @@ void Climb<Pose>::start(const CovarianceScale& scale) {
   best_ = now_;
 }
 
+// The peak of an earlier climb that this one leads to, if any.
 template <class Pose>
-std::vector<Standing> Climb<Pose>::standings(const Explanation<Pose>& explanation) {
-  now_ = explanation;
-  assessment_.restore(now_);
-  for (int k = 0; k < 2; ++k) assessment_.assess(now_);  // weights by the covariances there
-  return assessment_.standings();
-}
-
-template <class Pose>
-void Climb<Pose>::grow() {
+const Explanation<Pose>* Climb<Pose>::grow() {
   int vain = 0;  // moves since the best explanation so far
   for (int round = 0; round < options_.max_rounds; ++round) {
     tell_progress();
     const double before = best_.evidence;
     const std::size_t had = accepted_count();
-    if (!move()) return;
-    const double enough = std::max(summit_ - best_.evidence, 0.0) / kPatience;
+    const bool learnt =
+        had >= kMoreTelling * learnt_from_ && learn_more_than(gain_of_dropping(misfits()));
+    if (const auto* known = had > 0 ? peak_ahead(learnt) : nullptr) return known;
+    if (!learnt && !move()) return nullptr;
+    const double enough = std::max(summit() - best_.evidence, 0.0) / kPatience;
     const bool grows = 2 * accepted_count() >= 3 * had;
     vain = grows || best_.evidence - before > enough ? 0 : vain + 1;
-    if (vain == kPatience) return;
+    if (vain == kPatience) return nullptr;
   }
   settled_ = false;
+  return nullptr;
 }
 
 // False where no move is left.
@@ -95,15 +139,30 @@ bool Climb<Pose>::move() {
   const Selection out = misfits();
   const Group batch = next_batch();
   const double dropping = gain_of_dropping(out);
-  if (accepted_count() >= kMoreTelling * learnt_from_ && learn_more_than(dropping)) return true;
   if (!batch.loops.empty() && batch.gain > dropping) {
     accept(batch.loops);
   } else if (!out.empty()) {
     if (!learn_more_than(dropping)) drop(out);
   } else {
-    return !seen_before() && learn_more_than(0.0);
+    return learn_more_than(0.0) || weigh_otherwise();
   }
   return true;
+}
+
+// Odometry against loops: where the one is taken for exact, the other has all the errors, of which
+// lessons do not find the way back.
+template <class Pose>
+bool Climb<Pose>::weigh_otherwise() {
+  const double redundancy = now_.redundancy.odometry.sum() + now_.redundancy.loops.sum();
+  if (!options_.calibrate || redundancy < 1.0) return false;  // nothing tells
+  for (const Trial trial : {Trial::wider_loops, Trial::sharper_loops}) {
+    if (failed_[trial]) continue;
+    const double factor = trial == Trial::wider_loops ? kOtherwise : 1.0 / kOtherwise;
+    const CovarianceScale scale{now_.scale.odometry, now_.scale.loops * factor};
+    if (try_scales(scale, now_.shapes, now_.shares)) return true;
+    failed_[trial] = true;
+  }
+  return false;
 }
 
 template <class Pose>
@@ -114,6 +173,7 @@ std::size_t Climb<Pose>::accepted_count() const {
 template <class Pose>
 void Climb<Pose>::assess() {
   assessment_.assess(now_);
+  failed_ = {};
   if (now_.evidence > best_.evidence) best_ = now_;
 }
 
@@ -121,7 +181,7 @@ void Climb<Pose>::assess() {
 // bad as the worst: each one dropped changes what is predicted of the rest.
 template <class Pose>
 typename Climb<Pose>::Selection Climb<Pose>::misfits() const {
-  const auto& standings = assessment_.standings();
+  const auto& standings = now_.standings;
   std::vector<double> worst;
   for (std::size_t k = 0; k < standings.size(); ++k) {
     if (now_.accepted[k] && standings[k].log_odds < 0.0) worst.push_back(standings[k].log_odds);
@@ -139,7 +199,7 @@ typename Climb<Pose>::Selection Climb<Pose>::misfits() const {
 template <class Pose>
 double Climb<Pose>::gain_of_dropping(const Selection& loops) const {
   double gain = 0.0;
-  for (const Index k : loops) gain -= assessment_.standings()[k].log_odds;
+  for (const Index k : loops) gain -= now_.standings[k].log_odds;
   return gain;
 }
 
@@ -159,7 +219,7 @@ Group Climb<Pose>::next_batch() const {
   for (std::size_t k = 0; k < open.size(); ++k) {
     open[k] = !now_.accepted[k] && !dropped_[k];
   }
-  auto groups = gaining_groups(objective_.runs(), open, assessment_.standings(), run_density_,
+  auto groups = gaining_groups(objective_.runs(), open, now_.standings, run_density_,
                                [&](Index k) { return assessment_.log_alternative(k); });
   return most_certain(std::move(groups), accepted_count());
 }
@@ -178,20 +238,27 @@ bool Climb<Pose>::learn_more_than(double gain) {
   learnt_from_ = std::max<std::size_t>(accepted_count(), 1);
   const double telling = kTelling * static_cast<double>(accepted_count());
   const double least = std::max({gain, kBetter, telling});
-  for (const bool same_shapes : {false, true}) {
-    const Lesson<Pose> lesson = learn(assessment_, now_, same_shapes);
-    if (lesson.gain > least && try_lesson(lesson)) return true;
+  for (const Trial trial : {Trial::lesson, Trial::lesson_of_scales}) {
+    if (failed_[trial]) continue;
+    const Lesson<Pose> found = learn(assessment_, now_, trial == Trial::lesson_of_scales);
+    if (found.gain <= least) continue;
+    if (try_scales(found.scale, found.shapes, found.shares)) return true;
+    failed_[trial] = true;
   }
   return false;
 }
 
-// Whether it is better. Scales at which the normal equations break down explain nothing.
+// Whether they explain better, or else nothing changes. Scales at which the normal equations break
+// down explain nothing.
 template <class Pose>
-bool Climb<Pose>::try_lesson(const Lesson<Pose>& lesson) {
+bool Climb<Pose>::try_scales(const CovarianceScale& scale, const Shapes<Pose>& shapes,
+                             const ScaleShares& shares) {
   const Explanation<Pose> before = now_;
-  now_.scale = lesson.scale;
-  now_.shapes = lesson.shapes;
-  now_.shares = lesson.shares;
+  const auto found = assessment_.findings();
+  const auto failed = failed_;
+  now_.scale = scale;
+  now_.shapes = shapes;
+  now_.shares = shares;
   bool better = false;
   try {
     assess();
@@ -199,12 +266,13 @@ bool Climb<Pose>::try_lesson(const Lesson<Pose>& lesson) {
   } catch (const NumericalError&) {
     better = false;
   }
-  if (!better) {
+  if (better) {
+    predict_runs();
+  } else {
     now_ = before;
-    assessment_.restore(now_);
-    assessment_.assess(now_);
+    assessment_.restore(now_, found);
+    failed_ = failed;
   }
-  predict_runs();
   return better;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <limits>
-#include <set>
+#include <array>
 #include <vector>
 
 #include "isotherm/slam/prune/consensus.hpp"
@@ -28,20 +27,24 @@ class Climb {
   /// explanation on the way.
   Explanation<Pose> from(const CovarianceScale& start);
 
+  /// What explains best that exactly these loops are true, from `start`.
+  Explanation<Pose> settled_on(const std::vector<bool>& accepted, const CovarianceScale& start);
+
   /// Nothing accepted, the covariances as stated.
   Explanation<Pose> nothing();
-
-  /// What each loop is worth given all others of an explanation.
-  std::vector<Standing> standings(const Explanation<Pose>& explanation);
 
   /// What the climbs did, and whether all ended.
   const std::vector<ConsensusMove>& moves() const noexcept { return moves_; }
   bool settled() const noexcept { return settled_; }
 
  private:
+  enum Trial { lesson, lesson_of_scales, wider_loops, sharper_loops };
+
   void start(const CovarianceScale& scale);
-  bool seen_before() const;
-  void grow();
+  const Explanation<Pose>* peak_ahead(bool learnt);
+  bool outdoes(const Explanation<Pose>& peak);
+  double summit() const;
+  const Explanation<Pose>* grow();
   bool move();
   void assess();
   std::size_t accepted_count() const;
@@ -51,7 +54,9 @@ class Climb {
   Group next_batch() const;
   void accept(const Selection& loops);
   bool learn_more_than(double gain);
-  bool try_lesson(const Lesson<Pose>& lesson);
+  bool weigh_otherwise();
+  bool try_scales(const CovarianceScale& scale, const Shapes<Pose>& shapes,
+                  const ScaleShares& shares);
   void predict_runs();
   void note(std::size_t accepted, std::size_t dropped);
   void tell_progress() const;
@@ -62,11 +67,11 @@ class Climb {
   Assessment<Pose> assessment_;
   Explanation<Pose> now_;
   Explanation<Pose> best_;
-  std::vector<double> run_density_;    // log p(z | the loop before in its run)
-  std::set<std::vector<bool>> peaks_;  // loops with which climbs ended
-  double summit_ = -std::numeric_limits<double>::infinity();  // the highest peak
-  std::vector<bool> dropped_;    // since the climb last rose; not tried again
-  std::size_t learnt_from_ = 0;  // loops, at the last lesson
+  std::vector<double> run_density_;       // log p(z | the loop before in its run)
+  std::vector<Explanation<Pose>> peaks_;  // of earlier climbs
+  std::vector<bool> dropped_;             // since the climb last rose; not tried again
+  std::size_t learnt_from_ = 0;           // loops, at the last lesson
+  std::array<bool, 4> failed_{};  // trials of other scales here; not repeated until a change
   std::vector<ConsensusMove> moves_;
   bool settled_ = true;
 };

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "prune/consensus/climb/standing.hpp"
 #include "prune/consensus/objective/runs.hpp"
+#include "prune/consensus/objective/standing.hpp"
 
 namespace isotherm::slam::detail {
 

@@ -15,7 +15,13 @@ constexpr double kSettled = 0.1;
 
 template <class Pose>
 Estimate<Pose>::Estimate(const ReducedGraph<Pose>& graph)
-    : graph_(graph), poses_(graph.poses), component_(graph.chain) {}
+    : graph_(&graph), poses_(graph.poses), component_(graph.chain) {}
+
+template <class Pose>
+void Estimate<Pose>::use(const ReducedGraph<Pose>& graph) {
+  graph_ = &graph;
+  equations_.reset();
+}
 
 template <class Pose>
 void Estimate<Pose>::lay_out(const std::vector<bool>& accepted) {
@@ -29,7 +35,7 @@ void Estimate<Pose>::lay_out(const std::vector<bool>& accepted) {
 
 template <class Pose>
 void Estimate<Pose>::linearize(const CovarianceScale& scale) {
-  const auto step_count = static_cast<Index>(graph_.steps.size());
+  const auto step_count = static_cast<Index>(graph_->steps.size());
   const auto scaling = [&](Index link, double) {
     double weight = 1.0 / (link < step_count ? scale.odometry : scale.loops);
     if (link >= step_count && !weights_.empty()) weight *= weights_[used_loops_[link - step_count]];
@@ -54,11 +60,7 @@ bool Estimate<Pose>::step() {
 template <class Pose>
 void Estimate<Pose>::update(const std::vector<bool>& accepted, const CovarianceScale& scale,
                             int max_steps) {
-  lay_out(accepted);
-  for (int k = 0;; ++k) {
-    linearize(scale);
-    if (k == max_steps || step()) return;
-  }
+  settle(accepted, scale, max_steps, [] { return false; });
 }
 
 template <class Pose>
@@ -98,7 +100,7 @@ std::vector<typename Pose::Matrix> Estimate<Pose>::relative_covariances(
   std::vector<std::pair<Index, Index>> pairs;
   pairs.reserve(loops.size());
   for (const Index k : loops) {
-    const auto& loop = graph_.loops[k];
+    const auto& loop = graph_->loops[k];
     const bool turns_back = loop.a == loop.b;
     pairs.emplace_back(turns_back ? -1 : variable[loop.a], turns_back ? -1 : variable[loop.b]);
   }
@@ -106,7 +108,7 @@ std::vector<typename Pose::Matrix> Estimate<Pose>::relative_covariances(
   std::vector<Matrix> covariances;
   covariances.reserve(loops.size());
   for (std::size_t k = 0; k < loops.size(); ++k) {
-    const auto& loop = graph_.loops[loops[k]];
+    const auto& loop = graph_->loops[loops[k]];
     const Matrix adjoint = (poses_[loop.b].inverse() * poses_[loop.a]).adjoint();
     const Matrix across = adjoint * known[k].cross;
     covariances.push_back(adjoint * known[k].first * adjoint.transpose() + known[k].second -
@@ -118,7 +120,7 @@ std::vector<typename Pose::Matrix> Estimate<Pose>::relative_covariances(
 template <class Pose>
 typename Pose::Tangent Estimate<Pose>::odometry_cost() const {
   Tangent cost = Tangent::Zero();
-  for (const auto& step : graph_.steps) {
+  for (const auto& step : graph_->steps) {
     const Tangent r = residual(step);
     cost += r.cwiseProduct(step.information * r);
   }
@@ -129,14 +131,14 @@ typename Pose::Tangent Estimate<Pose>::odometry_cost() const {
 template <class Pose>
 PoseGraph<Pose> Estimate<Pose>::used_links(const std::vector<bool>& accepted) {
   PoseGraph<Pose> used;
-  used.ids.assign(graph_.vertex.begin(), graph_.vertex.end());
+  used.ids.assign(graph_->vertex.begin(), graph_->vertex.end());
   const auto add = [&](const Link<Pose>& link) {
     used.constraints.push_back({link.a, link.b, link.T_a_b, link.information});
   };
-  for (const auto& step : graph_.steps) add(step);
+  for (const auto& step : graph_->steps) add(step);
   used_loops_.clear();
   for (std::size_t k = 0; k < accepted.size(); ++k) {
-    const auto& loop = graph_.loops[k];
+    const auto& loop = graph_->loops[k];
     if (!accepted[k] || loop.a == loop.b) continue;
     used_loops_.push_back(static_cast<Index>(k));
     add(loop);

@@ -30,6 +30,9 @@ class Estimate {
   /// `graph` must outlive this object. Starts at odometry.
   explicit Estimate(const ReducedGraph<Pose>& graph);
 
+  /// The same poses on the same graph with other covariances; update() must follow.
+  void use(const ReducedGraph<Pose>& graph);
+
   /// Gauss-Newton from the present poses, on odometry and the loops whose
   /// `accepted` entry is true. Parts of the graph that a loop joins for the first
   /// time are first moved to where it says. Ends once steps stop mattering
@@ -84,7 +87,7 @@ class Estimate {
   PoseGraph<Pose> used_links(const std::vector<bool>& accepted);
   void join_components(const PoseGraph<Pose>& used);
 
-  const ReducedGraph<Pose>& graph_;
+  const ReducedGraph<Pose>* graph_;
   std::vector<Pose> poses_;
   std::vector<Index> component_;
   std::vector<bool> laid_out_for_;  // loops that the equations hold, after all steps

@@ -9,6 +9,7 @@
 #include "prune/consensus/objective/runs.hpp"
 #include "prune/consensus/objective/scale_prior.hpp"
 #include "prune/consensus/objective/scaled_graph.hpp"
+#include "prune/consensus/objective/standing.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -32,7 +33,8 @@ struct Explanation {
   double scale_evidence = 0.0;  ///< ErrorScale::evidence, summed over the accepted ones
   Redundancy<Pose> redundancy;  ///< of odometry and of the accepted loops
   typename Estimate<Pose>::Layout layout;
-  double evidence = 0.0;  ///< Objective::evidence()
+  std::vector<Standing> standings;  ///< of each loop, given all others
+  double evidence = 0.0;            ///< Objective::evidence()
 };
 
 /// The log evidence of an explanation: of the accepted set A and the scales,
