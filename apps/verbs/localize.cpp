@@ -1,17 +1,22 @@
 #include "isotherm/network/localize/localize.hpp"
 #include "isotherm/base/words.hpp"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "console.hpp"
 #include "isotherm/network/io/position_file.hpp"
 #include "isotherm/network/io/range_file.hpp"
+#include "isotherm/network/localize/anchor_conflicts.hpp"
 #include "isotherm/spectral/edges/verdict_file.hpp"
 #include "option_verb.hpp"
 #include "report/build/network_report.hpp"
@@ -24,13 +29,41 @@ namespace {
 using namespace network;
 using spectral::Verdict;
 
-// A name that is a number, in decimal digits only.
+// A name that is a number as numbers are written: 007 is a name.
 std::optional<std::uint64_t> number_in(const std::string& name) {
   std::uint64_t number = 0;
   const auto end = name.data() + name.size();
   const auto [stop, error] = std::from_chars(name.data(), end, number);
-  if (error != std::errc() || stop != end) return std::nullopt;
+  if (error != std::errc() || stop != end || std::to_string(number) != name) return std::nullopt;
   return number;
+}
+
+// How many nodes ended which way.
+std::string node_counts(const RangeNetwork& network, const LocalizeResult& result) {
+  std::string line = counted(network.node_count(), "node");
+  for (const auto& [status, name] : enum_names(NodeStatus{})) {
+    const auto nodes = result.count(status);
+    const bool many_anchors = status == NodeStatus::anchor && nodes > 1;
+    if (nodes > 0) line += fmt::format(", {} {}{}", nodes, name, many_anchors ? "s" : "");
+  }
+  return line;
+}
+
+// What a network in which no node found a place lacks, by what most of its nodes are.
+std::string what_would_help(const RangeNetwork& network, const LocalizeResult& result) {
+  const int d = network.dimension;
+  std::array<std::pair<std::int64_t, std::string>, 4> remedies = {
+      {{result.count(NodeStatus::not_rigid),
+        fmt::format("ranges from each node to {} others at least", d + 1)},
+       {result.count(NodeStatus::mirrored),
+        fmt::format("anchors, or neighbours, that do not all lie {}",
+                    d == 2 ? "on a line" : "in a plane")},
+       {result.count(NodeStatus::not_connected),
+        result.anchored ? "ranges that lead to the anchors" : "ranges that connect the nodes"},
+       {result.count(NodeStatus::not_placed),
+        "more ranges that agree with each other, or true standard deviations"}}};
+  std::ranges::stable_sort(remedies, std::greater{}, [](const auto& r) { return r.first; });
+  return remedies.front().second;
 }
 
 struct LocalizeVerb : OptionVerb<LocalizeOptions> {
@@ -64,7 +97,20 @@ struct LocalizeVerb : OptionVerb<LocalizeOptions> {
                                numbered ? spectral::VertexNames() : names);
     }
     write_json(flags.json, to_json(network, result));
+    if (nothing_found(network, result)) return fail(network, result);
     return result.status == LocalizeStatus::not_converged ? kNotConverged : kOk;
+  }
+
+  static bool nothing_found(const RangeNetwork& network, const LocalizeResult& result) {
+    return result.count(NodeStatus::localised) == 0 &&
+           result.count(NodeStatus::anchor) < network.node_count();
+  }
+
+  // Nobody is served by a success without a single position.
+  static int fail(const RangeNetwork& network, const LocalizeResult& result) {
+    complain(fmt::format("no node could be localised ({}); what would help: {}",
+                         node_counts(network, result), what_would_help(network, result)));
+    return kNotConverged;
   }
 
   RangeNetwork read_network() const {
@@ -128,20 +174,18 @@ struct LocalizeVerb : OptionVerb<LocalizeOptions> {
         fmt::format("{}: {}, {} kept, {} pruned, {} ambiguous, {:.2f} s", enum_name(options.method),
                     counted(all.size(), "range"), count(all, Verdict::keep),
                     count(all, Verdict::prune), count(all, Verdict::ambiguous), result.seconds));
-    std::string line = counted(network.node_count(), "node");
-    for (const auto& [status, name] : enum_names(NodeStatus{})) {
-      const auto nodes = result.count(status);
-      const bool many_anchors = status == NodeStatus::anchor && nodes > 1;
-      if (nodes > 0) line += fmt::format(", {} {}{}", nodes, name, many_anchors ? "s" : "");
-    }
-    say(flags, line);
+    say(flags, node_counts(network, result));
     if (!result.anchored) say(flags, "no anchors: positions are known up to an isometry");
     for (Index v = 0; v < network.node_count(); ++v) {
       const auto status = result.nodes[v];
       if (status == NodeStatus::anchor || status == NodeStatus::localised) continue;
       detail_line(flags, fmt::format("node {}: {}", network.names[v], enum_name(status)));
     }
-    if (result.status == LocalizeStatus::no_start) warn(flags, "no node could be localised");
+    for (const auto& conflict : anchor_conflicts(network, result)) {
+      warn(flags, fmt::format("anchor {}: {} of its {} contradict where it is said to be",
+                              network.names[conflict.anchor], conflict.against,
+                              counted(conflict.ranges, "range")));
+    }
     if (result.status == LocalizeStatus::not_converged) {
       warn(flags, "the refinement did not converge; see --max-iterations");
     }

@@ -72,6 +72,40 @@ TEST_F(NetworkVerbs, NodesWithoutAPlaceSaySo) {
   EXPECT_EQ(strict.code, 0) << strict.err;
 }
 
+TEST_F(NetworkVerbs, NoNodeLocalisedIsAFailure) {
+  write_text(folder / "ranges.csv", "from,to,range,sigma\na,b,1,0.1\nb,c,1,0.1\nc,d,1,0.1\n");
+  const auto chain = run("localize ranges.csv -o out.csv");
+  EXPECT_EQ(chain.code, 4);
+  EXPECT_THAT(chain.err, HasSubstr("no node could be localised (4 nodes, "));
+  EXPECT_THAT(chain.err, HasSubstr("what would help: ranges from each node to 3 others"));
+  // Nothing was asked for where all nodes are anchors.
+  write_text(folder / "ranges.csv", "from,to,range\na,b,1\n");
+  write_text(folder / "anchors.csv", "node,x,y\na,0,0\nb,1,0\n");
+  EXPECT_EQ(run("localize ranges.csv --anchors anchors.csv -o out.csv").code, 0);
+}
+
+TEST_F(NetworkVerbs, ANameWithLeadingZerosStaysAName) {
+  write_text(folder / "ranges.csv",
+             "from,to,range,sigma\n007,8,1,0.01\n8,9,1,0.01\n007,9,1,0.01\n");
+  run_ok("localize ranges.csv -o p.csv --verdicts v.csv");
+  EXPECT_THAT(read_text(folder / "v.csv"), HasSubstr(",007,8\n"));
+}
+
+TEST_F(NetworkVerbs, AnAnchorInAWrongPlaceIsReported) {
+  run_ok(
+      "simulate network --nodes 40 --degree 20 --anchors 8 --noise 0.01 -o ranges.csv"
+      " --anchor-file anchors.csv --seed 2");
+  const auto right = run("localize ranges.csv --anchors anchors.csv -o p.csv");
+  EXPECT_THAT(right.err, testing::Not(HasSubstr("contradict"))) << right.err;
+  auto text = read_text(folder / "anchors.csv");
+  const auto first = text.find('\n') + 1;
+  const auto name = text.substr(first, text.find(',', first) - first);
+  text.replace(first, text.find('\n', first) - first, name + ",0.5,0.5");
+  write_text(folder / "anchors.csv", text);
+  const auto moved = run("localize ranges.csv --anchors anchors.csv -o p.csv");
+  EXPECT_THAT(moved.err, HasSubstr("warning: anchor " + name + ": ")) << moved.err;
+}
+
 TEST_F(NetworkVerbs, BadInput) {
   write_text(folder / "ranges.csv", "from,to,range\na,b,1\nb,c,-2\n");
   const auto negative = run("localize ranges.csv -o out.csv");
