@@ -3,10 +3,10 @@
 false or too long, from its own start and from the true one, and writes docs/results/ranges.md.
 
 usage: scripts/build.sh release
-       benchmarks/ranges.py [--only NAME ...] [--seeds N] [--page-only] [DATA]
+       benchmarks/ranges.py [--only NAME ...] [--seeds N] [--page-only] [--data FOLDER]
 
 Every cell is kept in build/ranges.json as soon as it is measured; a run that is stopped goes on
-where it was. DATA is the folder of data sets (default $ISOTHERM_DATA or ../shared/data).
+where it was. FOLDER is that of the data sets (default $ISOTHERM_DATA or ../shared/data).
 """
 import argparse
 import csv
@@ -16,9 +16,9 @@ import os
 import pathlib
 import random
 import re
+import resource
 import subprocess
 import tempfile
-import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 COMMAND = os.environ.get("ISOTHERM", str(ROOT / "build/release/apps/isotherm"))
@@ -197,12 +197,17 @@ def run(data, lengths, folder, *flags, without=()):
     return run_file(data, source, folder, *flags)
 
 
+def processor_seconds():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 def run_file(data, source, folder, *flags):
     positions, verdicts, result = (folder / name for name in ("p.csv", "v.csv", "r.json"))
-    start = time.perf_counter()
+    start = processor_seconds()
     done = subprocess.run([COMMAND, "localize", source, "-o", positions, "--verdicts", verdicts,
                            "--json", result, "-q", *flags], capture_output=True, text=True)
-    seconds = time.perf_counter() - start
+    seconds = processor_seconds() - start
     if done.returncode not in (0, 4):
         raise RuntimeError(done.stderr)
     with open(positions, newline="") as file:
@@ -265,6 +270,60 @@ def measure(store, name, data, seeds):
                                                              without=chosen)[0])
 
 
+def measure_log(store, data, path):
+    """The log of the same drive as the radio gave it. Of its beacons, 5 is L3 and 6 is L2."""
+    renamed = dict(data.truth)
+    renamed["L5"], renamed["L6"] = renamed.pop("L3"), renamed.pop("L2")
+
+    def of_log():
+        with tempfile.TemporaryDirectory() as temporary:
+            beside = argparse.Namespace(truth=renamed, beacons={"L0", "L1", "L5", "L6"})
+            return run_file(beside, path.with_name("Plaza1_TD.txt"), pathlib.Path(temporary),
+                            "--odometry", path)[0]
+    store.cell("plaza1/log", of_log)
+
+
+def number(cell, key, digits=3):
+    return f"{cell[key]:.{digits}f}" if cell and cell.get(key) is not None else "–"
+
+
+def start_rows(cells):
+    rows = ["| data | start | trajectory | beacons | cost | seconds |", "|---|---|---|---|---|---|"]
+    for name in DATA:
+        for key, start in (("clean/automatic", "automatic"), ("clean/file", "true"),
+                           ("log", "automatic, raw log")):
+            cell = cells.get(f"{name}/{key}")
+            if cell:
+                note = "" if cell["code"] == 0 else " *"
+                rows.append(f"| {name} | {start}{note} | {number(cell, 'trajectory')} | "
+                            f"{number(cell, 'beacons')} | {number(cell, 'cost', 1)} | "
+                            f"{number(cell, 'seconds', 0)} |")
+    return rows
+
+
+def fault_rows(cells):
+    rows = ["| data | wrong ranges | P | R | trajectory | correct ones only | beacons | "
+            "correct ones only | seconds |", "|---|---|---|---|---|---|---|---|---|"]
+    for key, cell in cells.items():
+        if "precision" not in cell:
+            continue
+        name, fault = key.split("/")
+        correct = cells.get(key + "/correct")
+        rows.append(f"| {name} | {fault.rsplit(' ', 1)[0]} | {number(cell, 'precision')} | "
+                    f"{number(cell, 'recall')} | {number(cell, 'trajectory')} | "
+                    f"{number(correct, 'trajectory')} | {number(cell, 'beacons')} | "
+                    f"{number(correct, 'beacons')} | {number(cell, 'seconds', 0)} |")
+    return rows
+
+
+def write_page(cells):
+    text = PAGE.read_text() if PAGE.exists() else "<!-- starts -->\n<!-- faults -->\n"
+    for mark, rows in (("starts", start_rows(cells)), ("faults", fault_rows(cells))):
+        table = f"<!-- {mark} -->\n" + "\n".join(rows) + f"\n<!-- end of {mark} -->"
+        text = re.sub(f"<!-- {mark} -->(.*<!-- end of {mark} -->)?", lambda _: table, text, flags=re.S)
+    PAGE.write_text(text)
+
+
 DATA = {"plaza1": (PyFG, "snl/plaza1/plaza1.pyfg"),
         "single_drone": (PyFG, "snl/single_drone/single_drone.pyfg"),
         "labyrinth": (LibRSF, "snl/labyrinth_uwb/Indoor_UWB_Input.txt")}
@@ -274,17 +333,21 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", nargs="*", default=list(DATA))
     parser.add_argument("--seeds", type=int, default=1)
-    parser.add_argument("data", nargs="?", type=pathlib.Path,
+    parser.add_argument("--page-only", action="store_true", help="write the page of what there is")
+    parser.add_argument("--data", type=pathlib.Path,
                         default=os.environ.get("ISOTHERM_DATA", ROOT / ".." / "shared" / "data"))
     given = parser.parse_args()
     store = Store()
-    for name in given.only:
+    for name in () if given.page_only else given.only:
         reader, path = DATA[name]
         with tempfile.TemporaryDirectory() as folder:
             data = reader(pathlib.Path(given.data) / path)
             if reader is LibRSF:
                 data = data.as_pyfg(pathlib.Path(folder) / "ranges.pyfg")
+            if name == "plaza1":
+                measure_log(store, data, pathlib.Path(given.data) / path)
             measure(store, name, data, given.seeds)
+    write_page(store.cells)
 
 
 if __name__ == "__main__":

@@ -36,9 +36,8 @@ class Location {
     if (options_.start == RangeStart::file) {
       consider(map_of_file());
     } else {
-      for (const auto& start : kStarts) {
-        if (!explained()) consider(grow(start));
-      }
+      std::size_t tries = is_large() ? kStartsOfLarge : kStarts.size();
+      for (std::size_t k = 0; k < tries && !explained(); ++k) consider(grow(kStarts[k]));
       repair();
     }
     choose_model();
@@ -51,7 +50,12 @@ class Location {
     double odometry;  // on stated covariances
     bool windows;
   };
-  static constexpr std::array<Start, 3> kStarts = {{{1.0, true}, {100.0, true}, {1.0, false}}};
+  static constexpr std::array<Start, 6> kStarts = {
+      {{1.0, true}, {100.0, true}, {1.0, false}, {1e4, true}, {100.0, false}, {1e4, false}}};
+  static constexpr std::size_t kStartsOfLarge = 3;
+  static constexpr Index kLarge = 4000;  // nodes: a start takes seconds
+
+  bool is_large() const { return given_.node_count() >= kLarge; }
 
   detail::RangeModel first_model() const {
     detail::RangeModel model;
@@ -72,11 +76,13 @@ class Location {
     return detail::grow_map(world_, model, start.windows, run_);
   }
 
-  // Whether the map so far has a place for all nodes and needs no errors larger than stated.
+  // Whether the map so far has a place for all nodes, and errors about as large as stated: one
+  // that bent to wrong places needs larger ones of odometry, or smaller ones of ranges.
   bool explained() const {
     if (!found_ || problem_.terms.size() < world_.graph.ranges.size()) return false;
     const auto& model = map_.estimate.model;
-    return model.scale < kAsStated && model.odometry < kAsStated * kAsStated;
+    const double most = std::log(kAsStated);
+    return std::abs(std::log(model.scale)) < most && std::log(model.odometry) < 2.0 * most;
   }
 
   // Takes a map, fitted, if it is the likeliest so far.
@@ -250,7 +256,7 @@ class Location {
     return errors;
   }
 
-  static constexpr double kAsStated = 2.0;   // no more than so many times
+  static constexpr double kAsStated = 2.0;   // within this factor
   static constexpr double kElsewhere = 3.0;  // deviations of a range
 
   const RangeGraph<Pose>& given_;
