@@ -16,6 +16,7 @@ constexpr double kFirstDamping = 1e-10;  // below the stiffness of any direction
 constexpr double kMostDamping = 1e12;
 constexpr double kNoGain = 1e-3;     // nats: what nobody can tell apart
 constexpr double kSameScale = 1e-2;  // of the log of a scale
+constexpr double kTold = 3.0;        // deviations: what noise hardly ever exceeds
 constexpr int kMostRounds = 40;
 
 template <class Pose>
@@ -88,7 +89,14 @@ class Fit {
   void learn_ranges() {
     const auto found = statistics();
     learn_kinds(found, problem_.typical_excess, problem_.too_long, at_.model);
+    // An excess that noise hides is noise.
+    at_.model.excess = std::max(at_.model.excess, kTold * at_.model.sigma(typical_sigma()));
     at_.model.scale = std::max(at_.model.scale, most_likely_scale(found, 0.0, at_.model.scale));
+  }
+
+  // The excess to begin with is between it and the longest range.
+  double typical_sigma() const {
+    return problem_.typical_excess * problem_.typical_excess / problem_.longest;
   }
 
   // How far everything is known here. True if that changes no scale.
