@@ -284,7 +284,8 @@ def measure_log(store, data, path):
 
 
 def number(cell, key, digits=3):
-    return f"{cell[key]:.{digits}f}" if cell and cell.get(key) is not None else "–"
+    value = cell.get(key) if cell else None
+    return "–" if value is None or math.isnan(value) else f"{value:.{digits}f}"
 
 
 def start_rows(cells):
