@@ -1,12 +1,21 @@
 #include "optimize/normal_equations.hpp"
 
+#include <algorithm>
+
 namespace isotherm::slam {
 
 template <class Pose>
 NormalEquations<Pose>::NormalEquations(const PoseGraph<Pose>& graph, spectral::FactorForm form)
-    : gauge_(fix_gauge(graph)),
+    : NormalEquations(graph, fix_gauge(graph), {}, form) {}
+
+template <class Pose>
+NormalEquations<Pose>::NormalEquations(const PoseGraph<Pose>& graph, Gauge gauge,
+                                       const std::vector<std::pair<Index, Index>>& couplings,
+                                       spectral::FactorForm form)
+    : gauge_(std::move(gauge)),
       edges_(edges_of(graph, gauge_)),
-      hessian_(pattern_of(edges_, gauge_, form)),
+      couplings_(pairs_of(couplings, edges_, gauge_)),
+      hessian_(pattern_of(edges_, couplings, gauge_, form)),
       gradient_(Eigen::VectorXd::Zero(hessian_.size())) {}
 
 template <class Pose>
@@ -25,14 +34,47 @@ std::vector<typename NormalEquations<Pose>::Edge> NormalEquations<Pose>::edges_o
 }
 
 template <class Pose>
-spectral::BlockCholesky NormalEquations<Pose>::pattern_of(const std::vector<Edge>& edges,
-                                                          const Gauge& gauge,
-                                                          spectral::FactorForm form) {
+std::vector<std::ptrdiff_t> NormalEquations<Pose>::pairs_of(
+    const std::vector<std::pair<Index, Index>>& couplings, const std::vector<Edge>& edges,
+    const Gauge& gauge) {
+  auto next = std::ranges::count_if(edges, [](const Edge& edge) { return edge.pair >= 0; });
+  std::vector<std::ptrdiff_t> pairs;
+  pairs.reserve(couplings.size());
+  for (const auto& [a, b] : couplings) {
+    const bool both = a != b && gauge.variable[a] >= 0 && gauge.variable[b] >= 0;
+    pairs.push_back(both ? next++ : -1);
+  }
+  return pairs;
+}
+
+template <class Pose>
+spectral::BlockCholesky NormalEquations<Pose>::pattern_of(
+    const std::vector<Edge>& edges, const std::vector<std::pair<Index, Index>>& couplings,
+    const Gauge& gauge, spectral::FactorForm form) {
   std::vector<std::pair<Index, Index>> pairs;
   for (const Edge& edge : edges) {
     if (edge.pair >= 0) pairs.emplace_back(gauge.variable[edge.from], gauge.variable[edge.to]);
   }
+  for (const auto& [a, b] : couplings) {
+    const bool both = a != b && gauge.variable[a] >= 0 && gauge.variable[b] >= 0;
+    if (both) pairs.emplace_back(gauge.variable[a], gauge.variable[b]);
+  }
   return spectral::BlockCholesky(Pose::kDof, gauge.variable_count, pairs, form);
+}
+
+template <class Pose>
+void NormalEquations<Pose>::add_term(Index vertex, const typename Pose::Matrix& hessian,
+                                     const typename Pose::Tangent& gradient) {
+  const Index variable = gauge_.variable[vertex];
+  if (variable < 0) return;
+  hessian_.add_diagonal(variable, hessian);
+  gradient_.template segment<Pose::kDof>(Eigen::Index{variable} * Pose::kDof) += gradient;
+}
+
+template <class Pose>
+void NormalEquations<Pose>::add_coupling(Index coupling, const typename Pose::Matrix& hessian) {
+  const auto pair = couplings_[coupling];
+  if (pair >= 0) hessian_.add_pair(static_cast<std::size_t>(pair), hessian);
 }
 
 template <class Pose>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -39,6 +40,11 @@ class NormalEquations {
   explicit NormalEquations(const PoseGraph<Pose>& graph,
                            spectral::FactorForm form = spectral::FactorForm::fastest);
 
+  /// With a gauge of the caller's, and room for further terms that couple pairs of vertices.
+  NormalEquations(const PoseGraph<Pose>& graph, Gauge gauge,
+                  const std::vector<std::pair<Index, Index>>& couplings,
+                  spectral::FactorForm form = spectral::FactorForm::fastest);
+
   const Gauge& gauge() const noexcept { return gauge_; }
   Index constraint_count() const noexcept { return static_cast<Index>(edges_.size()); }
 
@@ -47,6 +53,13 @@ class NormalEquations {
 
   /// Sets up H and the gradient at `poses`; returns chi-squared per constraint. O(m).
   Eigen::VectorXd linearize(const std::vector<Pose>& poses, const EdgeScalingFunction& scaling);
+
+  /// Adds a term of one vertex to H and the gradient; of a vertex that is held, nothing.
+  void add_term(Index vertex, const typename Pose::Matrix& hessian,
+                const typename Pose::Tangent& gradient);
+
+  /// Adds to the block of H in the row of a coupling's first vertex and the column of its second.
+  void add_coupling(Index coupling, const typename Pose::Matrix& hessian);
 
   /// H, and its factor once factorised.
   spectral::BlockCholesky& hessian() noexcept { return hessian_; }
@@ -71,13 +84,17 @@ class NormalEquations {
   };
 
   static std::vector<Edge> edges_of(const PoseGraph<Pose>& graph, const Gauge& gauge);
-  static spectral::BlockCholesky pattern_of(const std::vector<Edge>& edges, const Gauge& gauge,
-                                            spectral::FactorForm form);
+  static std::vector<std::ptrdiff_t> pairs_of(const std::vector<std::pair<Index, Index>>& couplings,
+                                              const std::vector<Edge>& edges, const Gauge& gauge);
+  static spectral::BlockCholesky pattern_of(const std::vector<Edge>& edges,
+                                            const std::vector<std::pair<Index, Index>>& couplings,
+                                            const Gauge& gauge, spectral::FactorForm form);
   void add_edge(const Edge& edge, const typename Pose::Matrix& hessian_to,
                 const typename Pose::Tangent& gradient_to, const typename Pose::Matrix& adjoint);
 
   Gauge gauge_;
   std::vector<Edge> edges_;
+  std::vector<std::ptrdiff_t> couplings_;  // their off-diagonal blocks, or -1
   spectral::BlockCholesky hessian_;
   Eigen::VectorXd gradient_;
 };

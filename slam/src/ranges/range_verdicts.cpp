@@ -1,0 +1,116 @@
+#include "ranges/range_verdicts.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "isotherm/spectral/sparse/block_covariance.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+using spectral::EdgeVerdict;
+using spectral::Verdict;
+
+// A range whose prediction without it has more than so many times its own variance is checked by
+// nothing: rounding of the system's inverse.
+constexpr double kUnchecked = 1e-6;
+
+// What a range would be with the others alone.
+struct LeftOut {
+  double error = 0.0;
+  double variance = 0.0;
+  bool checked = false;
+};
+
+// One step of Newton's from the estimate with the range.
+LeftOut left_out(const RangeLoss& loss, double error, double noise, double predicted,
+                 double curvature) {
+  const double rest = 1.0 - curvature * predicted;
+  if (rest < kUnchecked) return {};
+  const double without = predicted / rest;
+  return {error + without * loss.slope, noise + without, true};
+}
+
+const char* name_of(const RangeLoss& loss) {
+  const auto& p = loss.probability;
+  if (p[kCorrect] >= p[kTooLong] && p[kCorrect] >= p[kAnything]) return "correct";
+  return p[kTooLong] >= p[kAnything] ? "too long" : "false";
+}
+
+void judge_range(const RangeModel& model, const LeftOut& range, double doubt,
+                 EdgeVerdict& verdict) {
+  const auto loss = range_loss(model, range.error, range.variance);
+  const double correct = loss.probability[kCorrect];
+  verdict.probability = correct;
+  verdict.score = range.error * range.error / range.variance;
+  verdict.stage = name_of(loss);
+  verdict.verdict = correct > 1.0 - doubt ? Verdict::keep
+                    : correct < doubt     ? Verdict::prune
+                                          : Verdict::ambiguous;
+}
+
+}  // namespace
+
+template <class Pose>
+spectral::EdgeVerdicts range_verdicts(const KnownWorld<Pose>& world,
+                                      const RangeProblem<Pose>& problem,
+                                      const RangeEstimate<Pose>& at, const FitSummary& summary,
+                                      double doubt) {
+  spectral::EdgeVerdicts verdicts;
+  const auto& ranges = world.graph.ranges;
+  for (std::size_t k = 0; k < ranges.size(); ++k) {
+    EdgeVerdict verdict;
+    verdict.edge = static_cast<std::int64_t>(k);
+    verdict.from = static_cast<std::uint64_t>(ranges[k].from);
+    verdict.to = static_cast<std::uint64_t>(ranges[k].to);
+    verdict.verdict = Verdict::ambiguous;
+    verdict.stage = "no position";
+    verdict.probability = at.model.share[kCorrect];
+    verdicts.push_back(std::move(verdict));
+  }
+  for (std::size_t k = 0; k < problem.terms.size(); ++k) {
+    const auto& term = problem.terms[k];
+    const double error = range_error(term, at);
+    const double noise = std::pow(at.model.sigma(term.sigma), 2);
+    const auto without = left_out(range_loss(at.model, error, noise), error, noise,
+                                  summary.variances[k], summary.curvatures[k]);
+    auto& verdict = verdicts[term.range];
+    if (without.checked) {
+      judge_range(at.model, without, doubt, verdict);
+    } else {
+      verdict.stage = "unchecked";
+    }
+  }
+  return verdicts;
+}
+
+template <class Pose>
+std::vector<Eigen::MatrixXd> position_covariances(const RangeProblem<Pose>& problem,
+                                                  const RangeEstimate<Pose>& at, Index nodes) {
+  std::vector<Eigen::MatrixXd> result(static_cast<std::size_t>(nodes));
+  RangeEquations<Pose> equations(problem, spectral::FactorForm::supernodal);
+  equations.linearise(at);
+  if (!equations.log_determinant()) return result;
+  const auto own = equations.own_covariances();
+  for (Index v = 0; v < nodes; ++v) {
+    const Index variable = problem.gauge.variable[v];
+    if (variable < 0) continue;
+    const auto rotation = at.poses[v].rotation_matrix();
+    result[v] = rotation * own[variable].template topLeftCorner<Pose::kDim, Pose::kDim>() *
+                rotation.transpose();
+  }
+  return result;
+}
+
+template spectral::EdgeVerdicts range_verdicts(const KnownWorld<Pose2>&, const RangeProblem<Pose2>&,
+                                               const RangeEstimate<Pose2>&, const FitSummary&,
+                                               double);
+template spectral::EdgeVerdicts range_verdicts(const KnownWorld<Pose3>&, const RangeProblem<Pose3>&,
+                                               const RangeEstimate<Pose3>&, const FitSummary&,
+                                               double);
+template std::vector<Eigen::MatrixXd> position_covariances(const RangeProblem<Pose2>&,
+                                                           const RangeEstimate<Pose2>&, Index);
+template std::vector<Eigen::MatrixXd> position_covariances(const RangeProblem<Pose3>&,
+                                                           const RangeEstimate<Pose3>&, Index);
+
+}  // namespace isotherm::slam::detail
