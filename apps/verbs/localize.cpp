@@ -296,8 +296,7 @@ Verb add_localize(CLI::App& root) {
   outputs.add(*verb, "-o,--output", localize->output,
               "positions, status and covariance of all nodes to write, as CSV", {".csv"});
   outputs.add(*verb, "--trajectory", localize->trajectory,
-              "trajectory to write, of an input with odometry; of several robots one file each,"
-              " NAME_ROBOT",
+              "trajectory to write, of an input with odometry; of several robots one file each",
               {".tum", ".kitti", ".csv"});
   outputs.add(*verb, "--verdicts", localize->verdicts, "decision and reason a range, as CSV",
               {".csv"});
