@@ -22,7 +22,7 @@
 #include "option_verb.hpp"
 #include "report/build/network_report.hpp"
 #include "report/report_flags.hpp"
-#include "verbs/locate_robots.hpp"
+#include "verbs/localize/locate_robots.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {

@@ -1,4 +1,4 @@
-#include "verbs/locate_robots.hpp"
+#include "verbs/localize/locate_robots.hpp"
 
 #include <algorithm>
 #include <cmath>
