@@ -15,6 +15,7 @@
 #include "isotherm/network/io/position_file.hpp"
 #include "isotherm/network/io/range_file.hpp"
 #include "isotherm/network/io/range_rows.hpp"
+#include "isotherm/network/localize/anchor_conflicts.hpp"
 #include "isotherm/network/localize/localize.hpp"
 #include "isotherm/network/range_network.hpp"
 #include "isotherm/network/simulate/simulate_network.hpp"
