@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "console.hpp"
+#include "isotherm/base/error.hpp"
 #include "isotherm/slam/evaluate/labels.hpp"
 #include "isotherm/slam/graph/trusted_edges.hpp"
 #include "isotherm/slam/prune/loop_evidence.hpp"
@@ -25,6 +26,9 @@ struct EvalEvidence : OptionVerb<ConsensusOptions> {
 
   int run() {
     if (resolve_or_dump()) return kOk;
+    if (verdicts.empty() && labels.empty()) {
+      throw InvalidArgument("eval evidence", "needs --verdicts or --labels");
+    }
     const auto kept = kept_edges();
     auto file = read_input_graph(input, flags);
     const double evidence = std::visit(
@@ -64,10 +68,9 @@ Verb add_eval_evidence(CLI::App& eval) {
   CLI::App* verb = eval.add_subcommand(
       "evidence", "log evidence that just the loops which some verdicts leave are true");
   add_graph_inputs(*verb, evidence->input, "pose graph that the verdicts are of");
-  auto* given = verb->add_option_group("answer", "the loops in question");
-  given->add_option("--verdicts", evidence->verdicts, "verdicts written by prune");
-  given->add_option("--labels", evidence->labels, "labels; those of the correct loops are meant");
-  given->require_option(1);
+  CLI::Option* labels = verb->add_option("--labels", evidence->labels,
+                                         "labels; those of the correct loops are meant");
+  verb->add_option("--verdicts", evidence->verdicts, "verdicts written by prune")->excludes(labels);
   verb->add_option("--trusted", evidence->trusted,
                    "CSV of edges to trust in place of odometry (edge, or from,to)")
       ->type_name("FILE");
