@@ -41,10 +41,7 @@ Verb add_embed(CLI::App& root) {
   CLI::App* verb = root.add_subcommand("embed", "give the vertices of a graph coordinates");
   verb->add_option("input", embed->input, "edge list or MatrixMarket file (- for stdin)")
       ->required();
-  embed->flags.outputs
-      .add(*verb, "-o,--output", embed->output,
-           "coordinates to write: CSV, or NumPy if named .npy (- for stdout)", {".csv", ".npy"})
-      ->required();
+  add_coordinates_output(*verb, embed->flags.outputs, embed->output);
   embed->add_flags(*verb);
   verb->footer(embeddings_help());
   return verb_of(verb, embed);

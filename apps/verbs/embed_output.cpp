@@ -29,6 +29,13 @@ std::string embeddings_help() {
   return help_table("Methods (all cost the same eigenpairs):", kEmbeddings);
 }
 
+void add_coordinates_output(CLI::App& verb, OutputFlags& outputs, std::string& path) {
+  outputs
+      .add(verb, "-o,--output", path,
+           "coordinates to write: CSV, or NumPy if named .npy (- for stdout)", {".csv", ".npy"})
+      ->required();
+}
+
 std::string csv_head(Eigen::Index columns) {
   std::string text = "vertex";
   for (Eigen::Index c = 0; c < columns; ++c) text += fmt::format(",x{}", c);

@@ -21,6 +21,9 @@ struct EmbedRun {
 /// The methods with what each needs, for the end of help.
 std::string embeddings_help();
 
+/// The flag that names the file of coordinates, which must be given.
+void add_coordinates_output(CLI::App& verb, OutputFlags& outputs, std::string& path);
+
 /// CSV: the line of names, and a row a vertex.
 std::string csv_head(Eigen::Index columns);
 std::string csv_rows(const Eigen::MatrixXd& rows, std::span<const std::uint64_t> ids);

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "graph/candidate_verdicts.hpp"
-#include "isotherm/base/error.hpp"
 #include "prune/consensus/climb/climb.hpp"
 #include "prune/consensus/climb/starts.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
@@ -27,19 +26,12 @@ constexpr double kNegligible = -20.0;  // log weight of an explanation
 // Fewer loops say too little of how accurate odometry is for one of them to be pruned.
 constexpr std::size_t kFewLoops = 5;
 
-// Nothing accepted, and what the climbs found; the best first. Scales at which the normal equations
-// break down explain nothing.
+// Nothing accepted, and what the climbs found; the best first.
 template <class Pose>
 std::vector<Explanation<Pose>> explanations(detail::Climb<Pose>& climb, bool calibrate) {
   std::vector<Explanation<Pose>> found = {climb.nothing()};
-  for (const auto& start : detail::kStarts) {
-    try {
-      found.push_back(climb.from(start));
-    } catch (const NumericalError&) {
-      continue;
-    }
-    if (!calibrate) break;
-  }
+  detail::climb_from_each_start(calibrate,
+                                [&](const auto& start) { found.push_back(climb.from(start)); });
   std::ranges::stable_sort(found, std::greater{}, &Explanation<Pose>::evidence);
   return found;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
 #include "isotherm/base/error.hpp"
 #include "isotherm/slam/graph/usable_odometry.hpp"
@@ -12,15 +13,20 @@
 namespace isotherm::slam {
 namespace {
 
-// One flag a candidate.
-std::vector<bool> flags_of(const std::vector<Index>& edges, const EdgeRoles& roles) {
-  std::vector<bool> flags(roles.candidates.size(), false);
+void require_candidates(const std::vector<Index>& edges, const EdgeRoles& roles) {
   for (const Index edge : edges) {
-    const auto at = std::ranges::lower_bound(roles.candidates, edge);
-    if (at == roles.candidates.end() || *at != edge) {
+    if (!std::ranges::binary_search(roles.candidates, edge)) {
       throw InvalidArgument("edges", "edge " + std::to_string(edge) + " is not a candidate");
     }
-    flags[static_cast<std::size_t>(at - roles.candidates.begin())] = true;
+  }
+}
+
+// One flag a candidate.
+std::vector<bool> flags_of(std::vector<Index> edges, const EdgeRoles& roles) {
+  std::ranges::sort(edges);
+  std::vector<bool> flags;
+  for (const Index candidate : roles.candidates) {
+    flags.push_back(std::ranges::binary_search(edges, candidate));
   }
   return flags;
 }
@@ -32,14 +38,9 @@ double highest_evidence(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
   const detail::Objective<Pose> objective(graph, roles, options.window, options.calibrate);
   detail::Climb<Pose> climb(objective, options, run.progress);
   double highest = -std::numeric_limits<double>::infinity();
-  for (const auto& start : detail::kStarts) {
-    try {
-      highest = std::max(highest, climb.settled_on(accepted, start).evidence);
-    } catch (const NumericalError&) {
-      continue;  // scales at which the normal equations break down explain nothing
-    }
-    if (!options.calibrate) break;
-  }
+  detail::climb_from_each_start(options.calibrate, [&](const auto& start) {
+    highest = std::max(highest, climb.settled_on(accepted, start).evidence);
+  });
   return highest;
 }
 
@@ -50,16 +51,11 @@ double loop_evidence(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                      const std::vector<Index>& edges, const ConsensusOptions& options,
                      const RunContext& run) {
   options.validate();
-  const std::vector<bool> asked = flags_of(edges, roles);
+  require_candidates(edges, roles);
   EdgeRoles judged = roles;
   const SetAside set_aside(graph, judged);
   if (judged.candidates.empty()) return 0.0;
-  std::vector<bool> accepted;
-  for (std::size_t k = 0; k < asked.size(); ++k) {
-    if (std::ranges::binary_search(judged.candidates, roles.candidates[k])) {
-      accepted.push_back(asked[k]);
-    }
-  }
+  const std::vector<bool> accepted = flags_of(edges, judged);
   const auto unusable = unusable_information(graph, judged);
   return unusable.empty() ? highest_evidence(graph, judged, accepted, options, run)
                           : highest_evidence(with_usable_information(graph, judged, unusable),

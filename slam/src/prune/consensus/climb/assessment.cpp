@@ -108,8 +108,9 @@ double Assessment<Pose>::uncertainty(const Explanation<Pose>& now, Index loop) c
   const auto& link = graph().loops[loop];
   const auto J = residual_jacobian<Pose>(estimate_.residual(link));
   const Matrix P = J * found_.covariances[loop] * J.transpose();
-  if (!found_.held.empty() && found_.held[loop])
+  if (!found_.held.empty() && found_.held[loop]) {
     return (link.information * P).trace() / now.scale.loops;
+  }
   const double weight = now.weights[loop];
   const Matrix own = link.covariance * now.scale.loops / weight;
   return Eigen::LLT<Matrix>(own + P).solve(P).trace() / weight;
