@@ -27,8 +27,11 @@ class Figures:
         self.folder = pathlib.Path(folder)
         self.folder.mkdir(parents=True, exist_ok=True)
 
-    def save(self, figure, name):
+    def save(self, figure, name, svg=True):
         figure.savefig(self.folder / f"{name}.png", dpi=110)
+        if not svg:  # thousands of lines
+            plt.close(figure)
+            return
         with matplotlib.rc_context({"svg.hashsalt": "isotherm", "svg.fonttype": "none"}):
             figure.savefig(self.folder / f"{name}.svg", metadata={"Date": None})
         strip_line_ends(self.folder / f"{name}.svg")
@@ -114,7 +117,7 @@ class Figures:
         for axis in axes[:, 0]:
             axis.set_ylabel("y [m]")
         figure.suptitle("KITTI 00, every loop and its copies, with 402 false loops in groups")
-        self.save(figure, "figure1-kitti")
+        self.save(figure, "figure1-kitti", svg=False)
 
     def kept(self, cell, flags, kernel, labels, work):
         """The map after pruning, and the labels of the loops that are left."""
