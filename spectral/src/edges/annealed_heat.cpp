@@ -120,7 +120,10 @@ class Rounds {
   /// Weighs all that is measured in the graph that trusts what is more likely true than false, and
   /// again in the graph that this leaves, until probabilities settle.
   Judgement weigh(Judgement heat, const std::optional<PlaneFeatures>& plane) const {
-    constexpr int kMostRounds = 10;
+    constexpr double kMostRounds = 10.0;
+    constexpr double kMostEdges = 1e6;  // over all rounds: large graphs settle by their size
+    const double affordable = kMostEdges / std::max(1.0, static_cast<double>(graph_.edge_count()));
+    const int most_rounds = static_cast<int>(std::clamp(affordable, 1.0, kMostRounds));
     heat.pairs = thin_out(heat.pairs);
     // To begin with, what crosses others vouches for none, and what crosses none is true.
     if (plane) {
@@ -128,7 +131,7 @@ class Rounds {
                              [](double crossed) { return crossed > 0.0 ? 0.0 : 1.0; });
     }
     auto judgement = odds(heat, plane);
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < most_rounds; ++round) {
       const auto trust = trust_of(judgement.groups.truth, kEven);
       const auto affinities =
           walk_affinities(graph_, trust, thin_out(pairs_), walks(options_.rounds - 1, trust));
