@@ -12,7 +12,7 @@ import scipy.linalg
 import planar
 from cells import TYPES, work_folder
 from experiment import bicocca_truth
-from methods import bicocca_error
+from methods import PRUNING, bicocca_error
 from runs import read_csv
 
 # Okabe and Ito's palette, told apart by every kind of colour vision.
@@ -27,8 +27,11 @@ class Figures:
         self.folder = pathlib.Path(folder)
         self.folder.mkdir(parents=True, exist_ok=True)
 
-    def save(self, figure, name):
+    def save(self, figure, name, svg=True):
         figure.savefig(self.folder / f"{name}.png", dpi=110)
+        if not svg:  # thousands of lines
+            plt.close(figure)
+            return
         with matplotlib.rc_context({"svg.hashsalt": "isotherm", "svg.fonttype": "none"}):
             figure.savefig(self.folder / f"{name}.svg", metadata={"Date": None})
         strip_line_ends(self.folder / f"{name}.svg")
@@ -76,6 +79,55 @@ class Figures:
             axis.set_ylabel("y [m]")
         figure.suptitle("Bicocca with 178 random false loops, the paper's own file")
         self.save(figure, "figure1-maps")
+
+    def kitti_maps(self):
+        """The paper's own Figure 1: KITTI 00 before and after pruning, by SC, RRR and heat."""
+        cell = self.graphs.kitti_cell("00", "paper", "random-grouped", 402, 1)
+        truth = self.graphs.kitti_truth("00")
+        labels = {(int(row["from"]), int(row["to"])): row["label"]
+                  for row in read_csv(cell.labels)}
+        with work_folder() as folder:
+            work = pathlib.Path(folder)
+            panels = {"(a) odometry and all loops": (self.odometry(cell.graph, work), labels)}
+            panels["(b) ground truth"] = (read_positions(truth), {})
+            for title, method, kernel in (
+                    ("(c) SC, loops that it keeps", "SC", ("--kernel", "sc")),
+                    ("(d) RRR, loops that it keeps", "RRR", ()),
+                    ("(e) heat (paper), loops that it keeps", "heat (paper)", ())):
+                panels[title] = self.kept(cell, PRUNING[method], kernel, labels, work)
+            dcs = ("--kernel", "dcs", "--kernel-width", 5)
+            panels["(f) heat (paper), then DCS"] = (
+                self.pruned(cell.graph, PRUNING["heat (paper)"], dcs, work), {})
+        figure, axes = plt.subplots(2, 3, figsize=(12, 8), sharex=True, sharey=True,
+                                    constrained_layout=True)
+        reference = panels["(b) ground truth"][0]
+        rows = np.column_stack([np.arange(len(reference)), reference])
+        for axis, (title, (path, shown)) in zip(axes.flat, panels.items()):
+            path = aligned(path, rows)
+            axis.plot(*path.T, color=GREY, linewidth=0.9)
+            draw_labelled(axis, path, shown, alpha=0.4)
+            axis.set_title(title, fontsize=10)
+            axis.set_aspect("equal")
+        low, high = reference.min(axis=0) - 60, reference.max(axis=0) + 60
+        axes.flat[0].set_xlim(low[0], high[0])
+        axes.flat[0].set_ylim(low[1], high[1])
+        axes.flat[0].legend(fontsize=7, loc="lower right")
+        for axis in axes[1]:
+            axis.set_xlabel("x [m]")
+        for axis in axes[:, 0]:
+            axis.set_ylabel("y [m]")
+        figure.suptitle("KITTI 00, every loop and its copies, with 402 false loops in groups")
+        self.save(figure, "figure1-kitti", svg=False)
+
+    def kept(self, cell, flags, kernel, labels, work):
+        """The map after pruning, and the labels of the loops that are left."""
+        self.command.run("prune", cell.graph, *flags, "-o", work / "pruned.g2o",
+                         "--verdicts", work / "verdicts.csv")
+        left = {(int(row["from"]), int(row["to"])) for row in read_csv(work / "verdicts.csv")
+                if row["verdict"] != "prune"}
+        graph = cell.graph if kernel else work / "pruned.g2o"  # SC weighs loops as it optimises
+        return (self.optimised(graph, kernel, work),
+                {pair: label for pair, label in labels.items() if pair in left})
 
     def bicocca_truth(self):
         """Rows of (vertex, x, y) where there is ground truth."""

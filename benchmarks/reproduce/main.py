@@ -4,6 +4,7 @@ import os
 import sys
 
 from cells import Graphs
+from drawings import draw_lap_line, draw_overview
 from experiment import ROOT, argument_parser
 from figures import Figures
 from methods import Measure
@@ -35,6 +36,9 @@ def main():
 
     figures = Figures(command, graphs, ROOT / "docs" / "images" / "paper")
     figures.maps()
+    figures.kitti_maps()
+    draw_overview(figures)
+    draw_lap_line(figures)
     figures.embedding()
     figures.decay()
     for style in extent.styles:

@@ -7,7 +7,7 @@ from page import STYLE_NAMES
 HEAD = """# The paper's experiments, repeated
 
 S. Datta et al. prune the loop closures of a pose graph by heat kernels at several
-scales. This page repeats their Tables I and II and Figures 1, 2, 5 and 6 with this
+scales. This page repeats their Tables I and II and Figures 1 to 6 with this
 library's own implementation of every method, beside the figures the paper prints.
 
     benchmarks/reproduce.sh{flags}
@@ -85,14 +85,24 @@ Precision and recall of what prunes:
 FIGURES = """
 ## Figures
 
-![Figure 1](../images/paper/figure1-maps.png)
+![Figure 1](../images/paper/figure1-kitti.png)
 
-Figure 1: the map with all loops of one of the paper's files, by every method, and the truth.
+Figure 1, as the paper has it: KITTI 00 with false loops, and what SC, RRR and the paper's method
+keep of them; correct loops blue, false ones red. The paper's SC keeps several false loops and its
+RRR prunes correct ones; ours do as the rows of Table I say.
+
+![Figure 1 on Bicocca](../images/paper/figure1-maps.png)
+
+The same on Bicocca: the map with all loops of one of the paper's files, by every method, and the
+truth.
 
 ![Figure 2](../images/paper/figure2-embedding.png)
 
 Figure 2: loops in the commute-time embedding. With equal weights false loops pull distant
 pieces together; with the weights the method starts from they stand out by their length.
+
+Figures 3 and 4 are drawings, of the [steps of the method](../concepts/heat-pruning.md) and of
+the [descriptor](../concepts/lap-line.md).
 
 ![Figure 5](../images/paper/figure5-decay.png)
 

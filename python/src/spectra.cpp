@@ -170,6 +170,8 @@ void bind_heat_distances(nb::module_& module) {
           "Diffusion times.")
       .def_prop_ro("converged", &HeatDistanceResult::converged,
                    "Whether all brackets are as narrow as asked for.")
+      .def_ro("imprecise", &HeatDistanceResult::imprecise,
+              "How many values are not known to a millionth of themselves.")
       .def_ro("seconds", &HeatDistanceResult::seconds, "Wall time.");
 }
 

@@ -2,14 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "edges/control_pairs.hpp"
-#include "edges/planar/plane_scores.hpp"
-#include "edges/step_counter.hpp"
+#include "edges/odds/edge_odds.hpp"
+#include "edges/odds/pair_features.hpp"
+#include "edges/odds/step_counter.hpp"
+#include "edges/odds/two_groups.hpp"
+#include "edges/planar/plane_features.hpp"
 #include "edges/thin_out.hpp"
-#include "edges/two_groups.hpp"
 #include "graph/bridges.hpp"
 #include "graph/series_reduction.hpp"
 #include "graph/simple_graph.hpp"
@@ -22,8 +26,7 @@ namespace {
 constexpr int kLongestDetour = 12;
 constexpr double kBudget = 1e9;  // steps along edges a round
 constexpr double kFirstScale = 0.5;
-// What a large change of judgement finds must be more likely false than true.
-constexpr double kEven = 0.5;
+constexpr double kEven = 0.5;             // more likely true than false
 constexpr double kMostFalse = 2.0 / 3.0;  // a graph with more would be none
 
 /// Three times the median detour, from a thousand edges spread evenly over the list:
@@ -41,19 +44,6 @@ int first_horizon(const WeightedGraph& graph) {
   const auto middle = detours.begin() + static_cast<std::ptrdiff_t>(detours.size() / 2);
   std::nth_element(detours.begin(), middle, detours.end());
   return 3 * *middle;
-}
-
-/// Judges the edges once more by what they cross, where the graph is nearly planar.
-void judge_in_plane(const WeightedGraph& graph, std::span<const double> lengths,
-                    const std::vector<VertexPair>& pairs, const WalkAffinityOptions& walks,
-                    AnnealedHeat& result) {
-  const auto scores = plane_scores(graph, lengths, result.scores, thin_out(pairs), walks);
-  if (!scores) return;
-  auto groups = separate_groups(scores->edges, scores->pairs);
-  result.scores = scores->edges;
-  result.false_count = groups.false_count;
-  result.truth = std::move(groups.truth);
-  result.in_plane = true;
 }
 
 /// From judgements about chains, those about each of their edges. A score is lowered to
@@ -78,10 +68,8 @@ struct Judgement {
   std::vector<double> edges;
   std::vector<double> pairs;
   TwoGroups groups;
+  double log_evidence = 0.0;
 };
-
-/// How ends that no walk joins are ordered.
-enum class Unjoined { as_before, alike };
 
 /// The rounds of one graph, which branch after the first.
 class Rounds {
@@ -105,53 +93,128 @@ class Rounds {
     Judgement judgement;
     judgement.edges.assign(graph_.edges().size(), 0.0);
     judgement.pairs.assign(pairs_.size(), 0.0);
-    judge(0, std::vector<double>(graph_.edges().size(), 1.0), Unjoined::as_before, judgement);
+    judge(0, std::vector<double>(graph_.edges().size(), 1.0), judgement);
     return judgement;
   }
 
   /// The rounds after the first: edges are weighted by the judgement before.
   Judgement trusting(Judgement judgement) const {
     for (int round = 1; round < options_.rounds; ++round) {
-      judge(round, trust_of(judgement), Unjoined::as_before, judgement);
+      judge(round, trust_of(judgement.groups.truth, options_.chance), judgement);
     }
     return judgement;
   }
 
   /// The same, but the most suspicious edges vouch for none in the second round, whatever is
-  /// thought of them; of ends that no walk joins the steps between them are counted at last.
+  /// thought of them.
   Judgement doubting(Judgement judgement) const {
     for (int round = 1; round < options_.rounds; ++round) {
-      auto trust = trust_of(judgement);
+      auto trust = trust_of(judgement.groups.truth, options_.chance);
       if (round == 1) leave_out_suspicious(judgement.edges, trust);
-      judge(round, trust, Unjoined::alike, judgement);
-      if (round + 1 == options_.rounds) count_steps(trust, walks(round, trust).horizon, judgement);
+      forget(judgement);
+      judge(round, trust, judgement);
+    }
+    return judgement;
+  }
+
+  /// Weighs all that is measured in the graph that trusts what is more likely true than false, and
+  /// again in the graph that this leaves, until probabilities settle.
+  Judgement weigh(Judgement heat, const std::optional<PlaneFeatures>& plane) const {
+    constexpr double kMostRounds = 10.0;
+    constexpr double kMostEdges = 1e6;  // over all rounds: large graphs settle by their size
+    const double affordable = kMostEdges / std::max(1.0, static_cast<double>(graph_.edge_count()));
+    const int most_rounds = static_cast<int>(std::clamp(affordable, 1.0, kMostRounds));
+    heat.pairs = thin_out(heat.pairs);
+    // To begin with, what crosses others vouches for none, and what crosses none is true.
+    if (plane) {
+      std::ranges::transform(plane->crossings.edges, heat.groups.truth.begin(),
+                             [](double crossed) { return crossed > 0.0 ? 0.0 : 1.0; });
+    }
+    auto judgement = odds(heat, plane);
+    for (int round = 0; round < most_rounds; ++round) {
+      const auto trust = trust_of(judgement.groups.truth, kEven);
+      const auto affinities =
+          walk_affinities(graph_, trust, thin_out(pairs_), walks(options_.rounds - 1, trust));
+      forget(heat);
+      update_scores(affinities.edges, heat.edges);
+      update_scores(affinities.pairs, heat.pairs);
+      heat.groups = judgement.groups;
+      judgement = odds(heat, plane);
+      if (have_settled(heat.groups, judgement.groups)) break;
     }
     return judgement;
   }
 
  private:
-  std::vector<double> trust_of(const Judgement& judgement) const {
-    auto trust = judgement.groups.truth;
+  /// Whether no more than one false edge in a hundred, or half an edge, changed its place.
+  static bool have_settled(const TwoGroups& before, const TwoGroups& after) {
+    constexpr double kShare = 0.01;
+    double change = 0.0;
+    for (std::size_t k = 0; k < after.truth.size(); ++k) {
+      change += std::abs(after.truth[k] - before.truth[k]);
+    }
+    return change <= std::max(0.5, kShare * after.false_count);
+  }
+
+  /// From a judgement by heat. Edges whose ends no walk joins vouch for none, unless crossings
+  /// tell which of them are true.
+  Judgement odds(const Judgement& heat, const std::optional<PlaneFeatures>& plane) const {
+    auto truth = heat.groups.truth;
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      if (!plane && heat.edges[k] >= kNoWalk) truth[k] = 0.0;
+    }
+    std::vector<Measured> measured = {
+        {within_reach(heat.edges, heat), within_reach(heat.pairs, heat)}};
+    if (plane) {
+      measured.insert(measured.end(), {plane->crossings, plane->few_crossings, plane->distances});
+    }
+    const auto features = pair_features(graph_, trust_of(truth, kEven), thin_out(pairs_), measured,
+                                        {.most_steps = 2 * (horizon_ + options_.rounds - 1),
+                                         .threads = options_.threads,
+                                         .progress = options_.progress});
+    auto found = edge_odds(features, std::move(truth));
+    return {std::move(found.scores),
+            {},
+            {std::move(found.truth), found.false_count},
+            found.log_evidence};
+  }
+
+  static void forget(Judgement& judgement) {
+    std::fill(judgement.edges.begin(), judgement.edges.end(), 0.0);
+    std::fill(judgement.pairs.begin(), judgement.pairs.end(), 0.0);
+  }
+
+  static std::vector<double> trust_of(std::vector<double> trust, double chance) {
     for (double& p : trust) {
-      if (p < options_.chance) p = 0.0;
+      if (p < chance) p = 0.0;
     }
     return trust;
   }
 
-  void judge(int round, const std::vector<double>& trust, Unjoined unjoined,
-             Judgement& judgement) const {
+  void judge(int round, const std::vector<double>& trust, Judgement& judgement) const {
     const auto affinities = walk_affinities(graph_, trust, pairs_, walks(round, trust));
-    update_scores(affinities.edges, unjoined, judgement.edges);
-    update_scores(affinities.pairs, unjoined, judgement.pairs);
+    update_scores(affinities.edges, judgement.edges);
+    update_scores(affinities.pairs, judgement.pairs);
     judgement.groups = separate_groups(judgement.edges, judgement.pairs, kMostFalse);
   }
 
-  static void update_scores(const std::vector<double>& affinities, Unjoined unjoined,
-                            std::vector<double>& scores) {
+  /// Ends that no walk joins keep the order of the round before.
+  static void update_scores(const std::vector<double>& affinities, std::vector<double>& scores) {
     for (std::size_t k = 0; k < scores.size(); ++k) {
-      const double before = unjoined == Unjoined::as_before ? scores[k] : 0.0;
-      scores[k] = affinities[k] > 0.0 ? -std::log(affinities[k]) : kNoWalk + before;
+      scores[k] = affinities[k] > 0.0 ? -std::log(affinities[k]) : kNoWalk + scores[k];
     }
+  }
+
+  /// Scores, of which those of ends that no walk joins are the largest of the others.
+  static std::vector<double> within_reach(std::vector<double> scores, const Judgement& all) {
+    double largest = 0.0;
+    for (const auto& list : {std::cref(all.edges), std::cref(all.pairs)}) {
+      for (const double score : list.get()) {
+        if (score < kNoWalk) largest = std::max(largest, score);
+      }
+    }
+    for (double& score : scores) score = std::min(score, largest);
+    return scores;
   }
 
   /// Takes the trust of the most suspicious of the edges that have any.
@@ -165,66 +228,39 @@ class Rounds {
     }
   }
 
-  /// Puts the steps between them in place of the scores of ends that no walk joins.
-  void count_steps(const std::vector<double>& trust, int horizon, Judgement& judgement) const {
-    auto pair_scores = thin_out(judgement.pairs);
-    const auto pairs = thin_out(pairs_);
-    const auto edges = edge_pairs(graph_);
-    const auto count = [&](StepCounter& steps, VertexPair pair, Index edge, double& score) {
-      if (score >= kNoWalk) score = kNoWalk + steps.count(pair, 2 * horizon, edge);
-    };
-    const auto edge_count = static_cast<std::int64_t>(edges.size());
-    parallel_for(
-        edge_count + static_cast<std::int64_t>(pairs.size()), 256, options_.threads,
-        options_.progress, "steps", [&] { return StepCounter(graph_, trust); },
-        [&](StepCounter& steps, std::int64_t k) {
-          if (k < edge_count) {
-            count(steps, edges[k], static_cast<Index>(k), judgement.edges[k]);
-          } else {
-            count(steps, pairs[k - edge_count], -1, pair_scores[k - edge_count]);
-          }
-        });
-    judgement.groups = separate_groups(judgement.edges, pair_scores, kMostFalse);
-  }
-
   const WeightedGraph& graph_;
   const AnnealedHeatOptions& options_;
   std::vector<VertexPair> pairs_;
   int horizon_;
 };
 
-/// Whether `other` finds so many more false edges that chance does not explain it: those had
-/// vouched for each other.
-bool explains_more(const Judgement& other, const Judgement& than) {
-  constexpr double kDeviations = 5.0;
-  const double count = other.groups.false_count;
-  return count - than.groups.false_count > kDeviations * std::sqrt(count);
-}
-
 /// Judges the edges of a graph without bridges and chains.
 AnnealedHeat anneal_reduced(const WeightedGraph& graph, std::span<const double> lengths,
                             const AnnealedHeatOptions& options) {
+  if (graph.edge_count() == 0) return {};
   const Rounds rounds(graph, options);
   const auto first = rounds.first();
-  auto judgement = rounds.trusting(first);
-  const auto walks = rounds.walks(options.rounds - 1, judgement.groups.truth);
+  const auto heat = rounds.trusting(first);
+  const auto walks = rounds.walks(options.rounds - 1, heat.groups.truth);
+  const auto plane = plane_features(graph, lengths, heat.edges, thin_out(rounds.pairs()), walks);
+  auto judgement = rounds.weigh(heat, plane);
+  if (!plane && options.rounds > 2) {
+    auto other = rounds.weigh(rounds.doubting(first), plane);
+    if (other.log_evidence > judgement.log_evidence) judgement = std::move(other);
+  }
   AnnealedHeat result;
   result.scale = walks.scale;
   result.horizon = walks.horizon;
-  result.scores = judgement.edges;
-  judge_in_plane(graph, lengths, rounds.pairs(), walks, result);
-  double chance = result.in_plane ? std::min(options.chance, kEven) : options.chance;
-  if (!result.in_plane) {
-    auto other = options.rounds > 2 ? rounds.doubting(first) : judgement;
-    if (explains_more(other, judgement)) {
-      judgement = std::move(other);
-      chance = std::min(chance, kEven);
-    }
-    result.scores = std::move(judgement.edges);
-    result.false_count = judgement.groups.false_count;
-    result.truth = std::move(judgement.groups.truth);
-  }
+  result.in_plane = plane.has_value();
+  result.scores = std::move(judgement.edges);
+  result.false_count = judgement.groups.false_count;
+  result.truth = std::move(judgement.groups.truth);
   share_among_chains(lengths, result);
+  // From 0 on, which is the score of what is not judged.
+  const double least = std::ranges::min(result.scores);
+  for (double& score : result.scores) score -= least;
+  // Shortcuts that run side by side vouch for each other, and many of their neighbours are doubted.
+  const double chance = plane ? std::min(options.chance, kEven) : options.chance;
   result.threshold = rejection_threshold(result.scores, {result.truth, result.false_count}, chance);
   return result;
 }

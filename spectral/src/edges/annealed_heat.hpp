@@ -21,8 +21,7 @@ struct AnnealedHeatOptions {
 
 /// What the last round found out about each edge.
 struct AnnealedHeat {
-  /// -log of the affinity; where no walk joins the ends, kNoWalk plus the score of the
-  /// round before (0 in the first).
+  /// Log odds of false against true from all that is measured (edge_odds.hpp), the least being 0.
   std::vector<double> scores;
   /// Probability that the edge is a true one; 1 for those that are not judged:
   /// bridges, self-loops, and chains that close on themselves.
@@ -35,7 +34,7 @@ struct AnnealedHeat {
   bool in_plane = false;  ///< whether edges were judged by what they cross
 };
 
-/// A score that no affinity reaches.
+/// More than -log of any affinity.
 inline constexpr double kNoWalk = 1000.0;
 
 /// Judges all edges by the heat that the rest of the graph carries between their ends,
@@ -48,8 +47,11 @@ inline constexpr double kNoWalk = 1000.0;
 ///
 /// Walk affinities (walk_affinity.hpp) of the edges are compared with those of a
 /// control group of pairs of vertices (control_pairs.hpp, two_groups.hpp). The first horizon is
-/// three times the median detour around an edge, as far as that is affordable. Where the graph is
-/// nearly planar, the last judgement is by what the edges cross (plane_scores.hpp).
+/// three times the median detour around an edge, as far as that is affordable. Last, all that is
+/// measured is weighed (pair_features.hpp, edge_odds.hpp): the affinity of the ends, the steps
+/// between them, their neighbours, and where the graph is nearly planar what the edge crosses
+/// (plane_features.hpp). Of the answers that begin with and without the most suspicious edges, that
+/// of the higher evidence is taken.
 /// @throws Cancelled
 AnnealedHeat anneal_heat(const WeightedGraph& graph, const AnnealedHeatOptions& options);
 

@@ -6,9 +6,9 @@
 
 #include "edges/annealed_heat.hpp"
 #include "edges/control_pairs.hpp"
+#include "edges/odds/two_groups.hpp"
 #include "edges/pair_ranks.hpp"
 #include "edges/pair_scores.hpp"
-#include "edges/two_groups.hpp"
 #include "graph/bridges.hpp"
 #include "graph/simple_graph.hpp"
 #include "isotherm/base/error.hpp"

@@ -106,6 +106,13 @@ std::string words_without_bound(const ResistanceResult& resistances) {
          residual;
 }
 
+/// What two vertices' own edges add to any resistance between them, if no edge joins the two: with
+/// all other vertices in one, nothing else is left. In dense neighbourhoods it is nearly all (von
+/// Luxburg, Radl and Hein 2010).
+double resistance_of_ends(double first_degree, double second_degree) {
+  return 1.0 / first_degree + 1.0 / second_degree;
+}
+
 PairScores resistance_scores(const WeightedGraph& graph, const std::vector<VertexPair>& pairs,
                              const RunContext& run) {
   constexpr std::size_t kMostSolves = 1000;
@@ -113,7 +120,13 @@ PairScores resistance_scores(const WeightedGraph& graph, const std::vector<Verte
   auto resistances = edge_resistances(graph);
   if (!std::isfinite(resistances.bound))
     scores.warnings.push_back(words_without_bound(resistances));
-  scores.edges = std::move(resistances.without);
+  const auto degrees = weighted_degrees(graph);
+  for (Index e = 0; e < graph.edge_count(); ++e) {
+    const auto& [from, to, weight] = graph.edge(e);
+    const double all = resistances.without[e];
+    const double ends = resistance_of_ends(degrees[from] - weight, degrees[to] - weight);
+    scores.edges.push_back(std::isfinite(all) ? std::max(0.0, all - ends) : all);
+  }
   LaplacianSolver solver{Laplacian(graph)};
   const auto component = connected_components(graph).label;
   Eigen::VectorXd current = Eigen::VectorXd::Zero(graph.vertex_count());
@@ -125,7 +138,8 @@ PairScores resistance_scores(const WeightedGraph& graph, const std::vector<Verte
     current[from] = 1.0;
     current[to] = -1.0;
     const Eigen::VectorXd potential = solver.solve(current);
-    scores.pairs.push_back(potential[from] - potential[to]);
+    scores.pairs.push_back(potential[from] - potential[to] -
+                           resistance_of_ends(degrees[from], degrees[to]));
     current[from] = current[to] = 0.0;
   }
   return scores;

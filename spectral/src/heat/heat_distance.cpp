@@ -23,11 +23,13 @@ std::vector<HeatTarget> targets_of(std::span<const VertexPair> pairs) {
 void summarise(HeatDistanceResult& result, double tolerance) {
   const detail::HeatGoal goal{result.scales, tolerance, result.thresholds};
   result.unconverged = 0;
+  result.imprecise = 0;
   result.widest = 0.0;
   for (std::size_t k = 0; k < result.values.size(); ++k) {
     const auto& value = result.values[k];
     result.widest = std::max(result.widest, value.width());
     if (!goal.reached(value, k % result.scales.size())) ++result.unconverged;
+    if (!is_precise(value)) ++result.imprecise;
   }
 }
 

@@ -10,7 +10,7 @@ namespace isotherm::spectral::detail {
 
 struct PlanarSubgraphOptions {
   int rounds = 6;              ///< of improvement at most, >= 0
-  double budget = 3e7;         ///< edges that planarity tests may look at, over all tests
+  double budget = 2.4e7;       ///< edges that planarity tests may look at, over all tests
   double most_left_out = 0.2;  ///< share of the edges; a graph that needs more is not nearly planar
   ProgressCallback progress = {};
 };

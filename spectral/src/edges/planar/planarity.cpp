@@ -29,10 +29,12 @@ class LeftRightTest {
         chosen_(chosen),
         vertices_(graph.vertex_count()),
         edges_(graph.edges().size()) {
+    std::size_t places = 0;
     for (Index vertex = 0; vertex < graph.vertex_count(); ++vertex) {
-      vertices_[vertex].begin = vertices_[vertex].end = outgoing_.size();
-      outgoing_.resize(outgoing_.size() + graph.neighbours(vertex).size());
+      vertices_[vertex].begin = vertices_[vertex].end = places;
+      places += graph.neighbours(vertex).size();
     }
+    outgoing_.resize(places);
     for (Index vertex = 0; vertex < graph.vertex_count(); ++vertex) {
       if (vertices_[vertex].height == kNone && !graph.neighbours(vertex).empty()) orient(vertex);
     }

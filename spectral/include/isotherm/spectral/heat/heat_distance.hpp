@@ -59,6 +59,9 @@ void visit_fields(Options& options, Visitor&& visitor) {
   visitor("max_steps", options.max_steps, "most Lanczos steps a pair", closed(1, 1e6));
 }
 
+/// Whether a value is known to a millionth of itself.
+inline bool is_precise(const CertifiedValue& value) { return value.width() <= 1e-6 * value.lower; }
+
 /// Heat distances of `pairs` at `scales`, row-major: pairs x scales.
 struct HeatDistanceResult {
   std::vector<VertexPair> pairs;
@@ -70,7 +73,10 @@ struct HeatDistanceResult {
   std::vector<std::string> reasons;    ///< per scale: why its method was chosen
   std::int64_t unconverged = 0;        ///< values wider than asked for; their bracket still holds
   double widest = 0.0;                 ///< largest width of a bracket
-  double seconds = 0.0;                ///< wall time
+  /// Values that are not known to a millionth of themselves (is_precise()): small ones
+  /// beside an absolute tolerance, and those of which rounding leaves no more.
+  std::int64_t imprecise = 0;
+  double seconds = 0.0;  ///< wall time
 
   bool converged() const { return unconverged == 0; }
   const CertifiedValue& at(std::size_t pair, std::size_t scale) const {

@@ -1,4 +1,4 @@
-#include "edges/step_counter.hpp"
+#include "edges/odds/step_counter.hpp"
 
 #include <algorithm>
 

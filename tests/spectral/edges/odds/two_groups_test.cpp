@@ -1,4 +1,4 @@
-#include "edges/two_groups.hpp"
+#include "edges/odds/two_groups.hpp"
 
 #include <algorithm>
 #include <cmath>

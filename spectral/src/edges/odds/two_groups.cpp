@@ -1,4 +1,4 @@
-#include "edges/two_groups.hpp"
+#include "edges/odds/two_groups.hpp"
 
 #include <algorithm>
 #include <array>
@@ -21,7 +21,8 @@ double count_from(const std::vector<double>& sorted, double value) {
 
 /// Above a quantile of the null scores there are few true ones: what is found there says how
 /// many false ones there are: the least of several quantiles, each with half a standard deviation
-/// of its count on top; with two of them above high quantiles, where few are found.
+/// of its count on top; with two of them above high quantiles, where few are found. None if more
+/// are found above one than if all edges were false.
 double estimate_false(const std::vector<double>& scores, const std::vector<double>& null_scores,
                       double most_false) {
   constexpr std::array kQuantiles = {0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95};
@@ -32,6 +33,11 @@ double estimate_false(const std::vector<double>& scores, const std::vector<doubl
     const double from = null_scores[static_cast<std::size_t>(quantile * (null_count - 1.0))];
     const double found = count_from(scores, from);
     const double margin = quantile > kHigh ? 2.0 * std::sqrt(found + 1.0) : 0.5 * std::sqrt(found);
+    // True edges score less than pairs: where edges do not, the score says something else.
+    const double of_pairs = count_from(null_scores, from) / null_count;
+    if (found - 2.0 * std::sqrt(found + 1.0) > of_pairs * static_cast<double>(scores.size())) {
+      return 0.0;
+    }
     least = std::min(least, (found + margin) * null_count / count_from(null_scores, from));
   }
   return least > most_false * static_cast<double>(scores.size()) ? 0.0 : least;

@@ -1,4 +1,4 @@
-#include "edges/planar/plane_scores.hpp"
+#include "edges/planar/plane_features.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,6 @@
 namespace isotherm::spectral::detail {
 namespace {
 
-constexpr double kCrossing = 2.0;   // what one adds to -log of an affinity
 constexpr int kMostCrossings = 20;  // more say no more
 
 WalkAffinities affinities_within(const WeightedGraph& graph, const PlanarSubgraph& plane,
@@ -77,31 +76,41 @@ bool is_telling(const std::vector<int>& crossings_of_pairs) {
   return static_cast<double>(hidden) < kMostHidden * static_cast<double>(crossings_of_pairs.size());
 }
 
-std::vector<double> scores_of(const std::vector<double>& affinities,
-                              const std::vector<int>& crossings, double least) {
-  std::vector<double> scores;
-  for (std::size_t k = 0; k < affinities.size(); ++k) {
-    scores.push_back(kCrossing * crossings[k] - std::log(std::max(affinities[k], least)));
+std::vector<double> distances_of(const std::vector<double>& affinities, double least) {
+  std::vector<double> distances;
+  for (const double affinity : affinities) {
+    distances.push_back(-std::log(std::max(affinity, least)));
   }
-  return scores;
+  return distances;
+}
+
+std::vector<double> no_more_than(double most, const std::vector<int>& counts) {
+  std::vector<double> values;
+  for (const int count : counts) values.push_back(std::min<double>(most, count));
+  return values;
 }
 
 }  // namespace
 
-std::optional<PlaneScores> plane_scores(const WeightedGraph& graph, std::span<const double> lengths,
-                                        std::span<const double> suspicion,
-                                        std::span<const VertexPair> pairs,
-                                        const WalkAffinityOptions& options) {
+std::optional<PlaneFeatures> plane_features(const WeightedGraph& graph,
+                                            std::span<const double> lengths,
+                                            std::span<const double> suspicion,
+                                            std::span<const VertexPair> pairs,
+                                            const WalkAffinityOptions& options) {
+  constexpr double kFew = 3.0;
   const auto plane = best_subgraph(graph, lengths, suspicion, options);
   if (plane.chosen.empty()) return std::nullopt;
   PlaneMap map(graph, plane.chosen);
   const auto of_pairs = crossings_of_pairs(pairs, map);
   if (!is_telling(of_pairs)) return std::nullopt;
+  const auto of_edges = crossings_of_edges(graph, plane, map);
   const auto affinities = affinities_within(graph, plane, pairs, options);
   // Ends that no walk joins are as far as any that one does.
   const double least = std::min(least_positive(affinities.edges), least_positive(affinities.pairs));
-  return PlaneScores{scores_of(affinities.edges, crossings_of_edges(graph, plane, map), least),
-                     scores_of(affinities.pairs, of_pairs, least)};
+  return PlaneFeatures{
+      {no_more_than(kMostCrossings, of_edges), no_more_than(kMostCrossings, of_pairs)},
+      {no_more_than(kFew, of_edges), no_more_than(kFew, of_pairs)},
+      {distances_of(affinities.edges, least), distances_of(affinities.pairs, least)}};
 }
 
 }  // namespace isotherm::spectral::detail

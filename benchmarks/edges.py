@@ -1,0 +1,184 @@
+"""Every method of `isotherm edges` at its defaults, on the plain graphs of docs/results/graphs.md.
+
+usage: edges.py ISOTHERM DATA [SEED...]
+
+Prints precision, recall and area under the curve of the default method beside Jaccard's index, the
+detour around an edge and edge betweenness at the threshold that labels choose, how many edges of
+clean versions are pruned, and for every method F at its default and at its own best threshold.
+Every false edge counts, also between vertices that happen to be near. Seeds are 1, 2 and 3 unless
+others are named. Needs numpy, scipy and networkx.
+"""
+
+import collections
+import os
+import sys
+import tempfile
+
+import networkx
+import numpy as np
+from scipy.spatial import cKDTree
+
+from graphs import (Bench, add_false_edges, area_under_curve, minnesota, precision_and_recall,
+                    random_geometric, swiss_roll)
+
+METHODS = ("heat", "heat-multiscale", "affinity", "resistance", "jaccard", "common-neighbours")
+FAR = 20.0  # along the sheet, between the ends of a short circuit
+PIVOTS = 200  # of sampled betweenness
+
+
+def torus(count, rng, neighbours=8):
+    angles = []
+    while len(angles) < count:
+        around, across, chance = rng.random(3)
+        if chance <= (3 + np.cos(2 * np.pi * across)) / 4:  # evenly over the surface
+            angles.append((2 * np.pi * around, 2 * np.pi * across))
+    u, v = np.array(angles).T
+    ring = 3 + np.cos(v)
+    points = np.c_[ring * np.cos(u), ring * np.sin(u), np.sin(v)]
+    distances, near = cKDTree(points).query(points, neighbours + 1)
+    pairs = np.c_[np.repeat(np.arange(count), neighbours), near[:, 1:].ravel()]
+    return np.unique(np.sort(pairs, axis=1), axis=0), points, distances[:, -1]
+
+
+def crambin(data, names, cutoff):
+    path = os.path.join(data, "geomgraph", "protein_contacts", "1crn.pdb")
+    with open(path, encoding="utf-8") as file:
+        atoms = [line for line in file if line.startswith("ATOM")]
+    points = np.array([[float(line[k:k + 8]) for k in (30, 38, 46)] for line in atoms
+                       if names is None or line[12:16].strip() in names])
+    edges = cKDTree(points).query_pairs(cutoff, output_type="ndarray")
+    return edges, points, np.full(len(points), cutoff)
+
+
+def shorted_roll(count, shorts, rng):
+    """A Swiss roll, and edges from points to the nearest one of another layer."""
+    edges, sheet, _ = swiss_roll(count, rng)
+    angle = np.sqrt(np.maximum(0.0, invert_arc(sheet[:, 0])))
+    points = np.c_[angle * np.cos(angle), sheet[:, 1], angle * np.sin(angle)]
+    found = set()
+    while len(found) < shorts:
+        start = rng.integers(count)
+        distance = np.linalg.norm(points - points[start], axis=1)
+        distance[np.linalg.norm(sheet - sheet[start], axis=1) <= FAR] = np.inf
+        found.add(tuple(sorted((int(start), int(np.argmin(distance))))))
+    false = np.array(sorted(found), dtype=int).reshape(-1, 2)
+    labels = np.r_[np.zeros(len(edges), int), np.ones(len(false), int)]
+    order = rng.permutation(len(labels))
+    return np.r_[edges, false][order], labels[order]
+
+
+def invert_arc(along):
+    """The squared angle at a length along the spiral, by interpolation."""
+    angle = np.linspace(0.0, 5 * np.pi, 200_001)
+    length = 0.5 * (angle * np.sqrt(1 + angle**2) + np.arcsinh(angle))
+    return np.interp(along, length, angle) ** 2
+
+
+def graphs(data, seed, clean):
+    """Name, (edges, labels) of every graph."""
+    def shared(make, share):
+        rng = np.random.default_rng(seed)
+        return add_false_edges(make(rng), 0.0 if clean else share, rng)
+    yield "torus", shared(lambda rng: torus(2000, rng), 0.1)
+    for count, shorts in ((2000, 80), (10000, 400)):
+        rolled = shorted_roll(count, 0 if clean else shorts, np.random.default_rng(seed))
+        yield f"Swiss roll, {count:,}", rolled
+    yield "Minnesota roads", shared(lambda rng: minnesota(data), 0.05)
+    yield "crambin, C-alpha", shared(lambda rng: crambin(data, ("CA",), 8.0), 0.1)
+    yield "crambin, all atoms", shared(lambda rng: crambin(data, None, 5.0), 0.1)
+    yield "random geometric, 20 %", shared(lambda rng: random_geometric(2000, rng), 0.2)
+    yield "random geometric, 50 %", shared(lambda rng: random_geometric(2000, rng), 0.5)
+
+
+def best_threshold(scores, false):
+    """(F, precision, recall) at the threshold of the highest F."""
+    order = np.argsort(-scores, kind="stable")
+    right = np.cumsum(false[order])
+    pruned = np.arange(1, len(scores) + 1)
+    last = np.r_[np.diff(scores[order]) != 0, True]
+    f = np.where(last, 2 * right / (pruned + false.sum()), 0.0)
+    k = int(np.argmax(f))
+    return f[k], right[k] / pruned[k], right[k] / false.sum()
+
+
+def detours(edges, most=20):
+    neighbours = collections.defaultdict(set)
+    for a, b in edges:
+        neighbours[a].add(b)
+        neighbours[b].add(a)
+
+    def count(start, goal):
+        seen, rim = {start}, {start}
+        for steps in range(1, most + 1):
+            rim = {w for v in rim for w in neighbours[v]
+                   if w not in seen and {v, w} != {start, goal}}
+            if goal in rim:
+                return steps
+            if not rim:
+                return 0  # a bridge: nothing else joins the two
+            seen |= rim
+        return most + 1
+
+    return np.array([count(a, b) for a, b in edges], dtype=float)
+
+
+def betweenness(edges):
+    graph = networkx.Graph(map(tuple, edges))
+    pivots = min(PIVOTS, graph.number_of_nodes())
+    found = networkx.edge_betweenness_centrality(graph, k=pivots, seed=1)
+    return np.array([found.get((a, b), found.get((b, a))) for a, b in map(tuple, edges)])
+
+
+class Table:
+    def __init__(self, bench, data, seeds):
+        self.bench, self.data, self.seeds = bench, data, seeds
+
+    def rows(self):
+        names = [name for name, _ in graphs(self.data, self.seeds[0], True)]
+        found = {name: collections.defaultdict(list) for name in names}
+        for seed in self.seeds:
+            for name, (edges, _) in graphs(self.data, seed, True):
+                found[name]["clean"].append((self.bench.judge(edges, "heat")[0] == "prune").mean())
+            for name, (edges, labels) in graphs(self.data, seed, False):
+                self.measure(edges, np.minimum(labels, 1), found[name])
+        return found
+
+    def measure(self, edges, labels, row):
+        false = labels == 1
+        for method in METHODS:
+            verdict, scores, *_ = self.bench.judge(edges, method)
+            scores = np.where(np.isfinite(scores), scores, scores[np.isfinite(scores)].min())
+            precision, recall = precision_and_recall(verdict, labels)
+            f = 2 * precision * recall / max(1e-9, precision + recall)
+            row[method].append((precision, recall, area_under_curve(scores, labels), f,
+                                *best_threshold(scores, false)))
+        for name, scores in (("detour", detours(edges)), ("betweenness", betweenness(edges))):
+            row[name].append((0, 0, area_under_curve(scores, labels), 0,
+                              *best_threshold(scores, false)))
+
+
+def main():
+    command, data = sys.argv[1:3]
+    seeds = [int(seed) for seed in sys.argv[3:]] or [1, 2, 3]
+    with tempfile.TemporaryDirectory() as folder:
+        found = Table(Bench(command, folder), data, seeds).rows()
+    print("| graph | heat P | R | AUC | clean pruned | Jaccard P | R | AUC | detour P | R | AUC "
+          "| betweenness P | R | AUC |")
+    print("|---" * 14 + "|")
+    for name, row in found.items():
+        heat = np.mean(row["heat"], axis=0)
+        cells = [f"{value:.3f}" for value in heat[:2]] + [f"{heat[2]:.4f}",
+                                                          f"{100 * np.mean(row['clean']):.2f} %"]
+        for other in ("jaccard", "detour", "betweenness"):
+            means = np.mean(row[other], axis=0)
+            cells += [f"{means[5]:.3f}", f"{means[6]:.3f}", f"{means[2]:.4f}"]
+        print(f"| {name} | " + " | ".join(cells) + " |")
+    print("\n| graph | " + " | ".join(METHODS) + " |")
+    print("|---" * (len(METHODS) + 1) + "|")
+    for name, row in found.items():
+        means = [np.mean(row[method], axis=0) for method in METHODS]
+        print(f"| {name} | " + " | ".join(f"{m[3]:.3f} of {m[4]:.3f}" for m in means) + " |")
+
+
+if __name__ == "__main__":
+    main()
