@@ -12,6 +12,7 @@
 
 #include "console.hpp"
 #include "isotherm/network/io/range_file.hpp"
+#include "isotherm/slam/graph/replay_order.hpp"
 #include "isotherm/slam/io/file_format.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm/slam/io/trajectory_file.hpp"
@@ -77,6 +78,7 @@ struct ConvertVerb : OptionVerb<NoOptions> {
   std::string output;
   std::string to;
   std::string axes;
+  bool in_time_order = false;
 
   int run() {
     if (resolve_or_dump()) return kOk;
@@ -165,6 +167,9 @@ struct ConvertVerb : OptionVerb<NoOptions> {
     if (!axes.empty() && slam::content_of(target) != FileContent::trajectory) {
       throw InvalidArgument("--axes", "are turned in trajectories only");
     }
+    if (in_time_order) {
+      std::visit([](auto& graph) { graph = in_replay_order(std::move(graph)); }, file.graph);
+    }
     if (target == FileFormat::g2o) {
       slam::write_g2o(output, file);
     } else if (target == FileFormat::toro) {
@@ -247,6 +252,8 @@ Verb add_convert(CLI::App& root) {
                    "binary-graph; by default what the output's suffix says (.g2o .graph .tum "
                    ".kitti .euroc .pyfg .mtx .isograph)")
       ->type_name("FORMAT");
+  verb->add_flag("--in-time-order", convert->in_time_order,
+                 "write the edges of a pose graph in an order that 'follow' can replay");
   verb->add_option("--axes", convert->axes,
                    "turn a trajectory in space: a camera's axes are z forward, x right, y down, "
                    "a vehicle's x forward, y left, z up")

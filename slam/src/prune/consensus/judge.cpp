@@ -23,9 +23,6 @@ using spectral::Verdict;
 
 constexpr double kNegligible = -20.0;  // log weight of an explanation
 
-// Fewer loops say too little of how accurate odometry is for one of them to be pruned.
-constexpr std::size_t kFewLoops = 5;
-
 // Nothing accepted, and what the climbs found; the best first.
 template <class Pose>
 std::vector<Explanation<Pose>> explanations(detail::Climb<Pose>& climb, bool calibrate) {
@@ -60,20 +57,21 @@ std::vector<double> mean_log_odds(const std::vector<Explanation<Pose>>& found) {
   return log_true;
 }
 
-// Without `refutable` nothing can speak against the loop.
-Verdict verdict_of(bool accepted, double log_odds, double decisive, bool refutable) {
+}  // namespace
+
+Verdict detail::verdict_of(bool accepted, double log_odds, double decisive, bool refutable) {
   if (accepted && log_odds > decisive) return Verdict::keep;
   return log_odds < -decisive && refutable ? Verdict::prune : Verdict::ambiguous;
 }
 
-std::string stage_of(bool accepted, const detail::Standing& standing) {
+const char* detail::stage_of(bool accepted, bool connected) {
   if (accepted) return "accepted";
-  return standing.connected() ? "rejected" : "unconnected";
+  return connected ? "rejected" : "unconnected";
 }
 
 template <class Pose>
-void report(const std::vector<Explanation<Pose>>& found, double significance,
-            ConsensusResult& result) {
+void detail::report(const std::vector<Explanation<Pose>>& found, double significance,
+                    ConsensusResult& result) {
   const auto& best = found.front();
   const auto& standings = best.standings;
   const auto log_odds = mean_log_odds(found);
@@ -85,7 +83,7 @@ void report(const std::vector<Explanation<Pose>>& found, double significance,
     verdict.threshold = decisive;
     verdict.verdict =
         verdict_of(best.accepted[k], log_odds[k], decisive, many && standings[k].connected());
-    verdict.stage = stage_of(best.accepted[k], standings[k]);
+    verdict.stage = stage_of(best.accepted[k], standings[k].connected());
     verdict.probability = 1.0 / (1.0 + std::exp(-log_odds[k]));
     result.details.push_back({.probability = verdict.probability,
                               .evidence = standings[k].evidence,
@@ -104,7 +102,14 @@ void report(const std::vector<Explanation<Pose>>& found, double significance,
   result.log_evidence = best.evidence;
 }
 
-}  // namespace
+template <class Pose>
+bool detail::has_information(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
+  const auto says_something = [&graph](Index k) {
+    return !graph.constraints[k].information.isZero(0.0);
+  };
+  return std::ranges::any_of(roles.odometry, says_something) &&
+         std::ranges::any_of(roles.candidates, says_something);
+}
 
 template <class Pose>
 ConsensusResult detail::judge_by_evidence(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
@@ -125,5 +130,10 @@ template ConsensusResult detail::judge_by_evidence(const PoseGraph<Pose2>&, cons
                                                    const ConsensusOptions&, const RunContext&);
 template ConsensusResult detail::judge_by_evidence(const PoseGraph<Pose3>&, const EdgeRoles&,
                                                    const ConsensusOptions&, const RunContext&);
+
+template void detail::report(const std::vector<Explanation<Pose2>>&, double, ConsensusResult&);
+template void detail::report(const std::vector<Explanation<Pose3>>&, double, ConsensusResult&);
+template bool detail::has_information(const PoseGraph<Pose2>&, const EdgeRoles&);
+template bool detail::has_information(const PoseGraph<Pose3>&, const EdgeRoles&);
 
 }  // namespace isotherm::slam

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "isotherm/base/statistics.hpp"
 #include "prune/consensus/objective/loop_gain.hpp"
@@ -17,10 +18,11 @@ constexpr int kFixedPointSteps = 30;
 }  // namespace
 
 template <class Pose>
-Assessment<Pose>::Assessment(const Objective<Pose>& objective)
+Assessment<Pose>::Assessment(const Objective<Pose>& objective, Pace pace)
     : objective_(objective),
+      pace_(std::move(pace)),
       found_{.graph = std::make_shared<ScaledGraph<Pose>>(objective.stated())},
-      estimate_(found_.graph->reduced),
+      estimate_(found_.graph->reduced, pace_),
       odometry_(estimate_.layout()) {
   found_.covariances.resize(graph().loops.size());
 }
@@ -48,6 +50,8 @@ void Assessment<Pose>::assess(Explanation<Pose>& now) {
   weigh(now);
   add_prior(now);
   now.layout = estimate_.layout();
+  // Covariances cost about two factorisations.
+  if (pace_) pace_(2.0 * static_cast<double>(graph().steps.size() + graph().loops.size()));
   now.evidence = objective_.evidence(now, *found_.graph, estimate_, found_.near);
 }
 

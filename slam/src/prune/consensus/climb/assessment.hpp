@@ -16,7 +16,7 @@ class Assessment {
   using Matrix = typename Pose::Matrix;
 
   /// `objective` must outlive this object.
-  explicit Assessment(const Objective<Pose>& objective);
+  explicit Assessment(const Objective<Pose>& objective, Pace pace = {});
 
   /// Back to the layout of odometry.
   void start_over();
@@ -67,6 +67,7 @@ class Assessment {
   void add_prior(Explanation<Pose>& now) const;
 
   const Objective<Pose>& objective_;
+  Pace pace_;
   Findings found_;
   Estimate<Pose> estimate_;
   typename Estimate<Pose>::Layout odometry_;
