@@ -13,7 +13,10 @@ using spectral::Verdict;
 EventLines::EventLines(const std::string& path) : path_(path) {
   if (path.empty()) return;
   out_ = &std::cout;
-  if (path == "-") return;
+  if (path == "-") {
+    path_ = "<stdout>";
+    return;
+  }
   file_.open(path);
   out_ = &file_;
   if (!file_) throw FileError(path, "cannot be written");

@@ -42,6 +42,10 @@ struct FollowVerb : OptionVerb<OnlineOptions> {
   int run() {
     if (resolve_or_dump()) return kOk;
     if (map.empty() != (every == 0)) throw InvalidArgument("--every", "goes with --map");
+    // What else goes to stdout has it for itself.
+    if (output == "-" || verdicts == "-" || flags.json == "-") {
+      if (events == "-") events.clear();
+    }
     std::ifstream file;
     if (input != "-") {
       file.open(input);
@@ -111,7 +115,12 @@ class FollowVerb::Session {
     if (!verb_.output.empty()) {
       write_g2o(verb_.output, apply_verdicts(online_.graph(), decided, verb_.keep_ambiguous));
     }
-    if (!verb_.verdicts.empty()) spectral::write_verdicts(verb_.verdicts, decided);
+    if (!verb_.verdicts.empty()) {
+      const auto lettered = [](const auto& row) { return !robot_letter(row.from).empty(); };
+      spectral::write_verdicts(
+          verb_.verdicts, decided,
+          std::ranges::any_of(decided, lettered) ? vertex_name : spectral::VertexNames());
+    }
     summarise(decided, took.count());
   }
 
@@ -149,19 +158,18 @@ class FollowVerb::Session {
                     count(decided, Verdict::keep), count(decided, Verdict::prune),
                     count(decided, Verdict::ambiguous), latency(0.5), latency(0.99), latency(1.0),
                     total, finish));
-    write_json(verb_.flags.json, {{"schema", "isotherm.follow/1"},
-                                  {"edges", edges_},
-                                  {"loops", decided.size()},
-                                  {"kept", count(decided, Verdict::keep)},
-                                  {"pruned", count(decided, Verdict::prune)},
-                                  {"ambiguous", count(decided, Verdict::ambiguous)},
-                                  {"latency_ms",
-                                   {{"median", latency(0.5)},
-                                    {"p99", latency(0.99)},
-                                    {"worst", latency(1.0)}}},
-                                  {"seconds", total},
-                                  {"finish_seconds", finish},
-                                  {"options", options_to_json(verb_.options)}});
+    write_json(verb_.flags.json,
+               {{"schema", "isotherm.follow/1"},
+                {"edges", edges_},
+                {"loops", decided.size()},
+                {"kept", count(decided, Verdict::keep)},
+                {"pruned", count(decided, Verdict::prune)},
+                {"ambiguous", count(decided, Verdict::ambiguous)},
+                {"latency_ms",
+                 {{"median", latency(0.5)}, {"p99", latency(0.99)}, {"worst", latency(1.0)}}},
+                {"seconds", total},
+                {"finish_seconds", finish},
+                {"options", options_to_json(verb_.options)}});
   }
 
   FollowVerb& verb_;
@@ -189,8 +197,7 @@ int FollowVerb::follow(PoseGraphStream& stream, StreamEntry first,
 
 Verb add_follow(CLI::App& root) {
   auto follow = std::make_shared<FollowVerb>();
-  CLI::App* verb =
-      root.add_subcommand("follow", "judge loop closures while a pose graph comes in");
+  CLI::App* verb = root.add_subcommand("follow", "judge loop closures while a pose graph comes in");
   verb->add_option("input", follow->input,
                    "pose graph whose lines stand in order of time (- for stdin)")
       ->required();

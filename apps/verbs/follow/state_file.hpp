@@ -23,8 +23,8 @@ class StateFile {
   template <class Pose>
   slam::OnlineConsensus<Pose> open(const slam::OnlineOptions& options, RunContext run) {
     if (path_.empty()) return slam::OnlineConsensus<Pose>(options, std::move(run));
+    if (std::filesystem::exists(path_)) drop_unfinished_line();
     const bool known = std::filesystem::exists(path_) && std::filesystem::file_size(path_) > 0;
-    if (known) drop_unfinished_line();
     std::ifstream in(path_);
     auto online = known ? slam::OnlineConsensus<Pose>::load(in, options, std::move(run))
                         : slam::OnlineConsensus<Pose>(options, std::move(run));

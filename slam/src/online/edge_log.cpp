@@ -21,8 +21,7 @@ bool same(const Pose3& a, const Pose3& b) {
 template <class Pose>
 UncertainPose<Pose> forward(const typename EdgeLog<Pose>::Edge& edge) {
   const UncertainPose<Pose> path{
-      edge.measured.T_from_to,
-      covariance_from_information<Pose::kDof>(edge.measured.information)};
+      edge.measured.T_from_to, covariance_from_information<Pose::kDof>(edge.measured.information)};
   return edge.from < edge.to ? path : inverse(path);
 }
 

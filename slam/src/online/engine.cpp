@@ -7,7 +7,7 @@
 
 #include "isotherm/base/error.hpp"
 #include "online/reason.hpp"
-#include "prune/consensus/judge.hpp"
+#include "prune/consensus/climb/report.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
 
 namespace isotherm::slam {
@@ -15,18 +15,22 @@ namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-// So few loops are searched through at once, whenever one comes that makes them half as many more.
-constexpr Index kAtOnce = 32;
-constexpr double kHalfMore = 1.5;
-// More of them whenever they have doubled, so that all searches together take about as long as the
-// last, and by the time that there are a quarter more edges.
-constexpr double kDoubled = 2.0;
+// Searches from every start begin where one of the loops can be pruned, and then whenever there are
+// four times as many, so that all of them together take little longer than the last. That is done
+// by the time that there are a quarter more edges; of so few loops, as soon as it can be.
+constexpr Index kFirst = detail::kFewLoops;
+constexpr Index kGrowth = 4;
 constexpr double kUntil = 0.25;
+constexpr Index kFew = 32;
 
-// What a call may do: about one solution of the map, of as many factorisations.
+// What a call may do: about one solution of the map, of so many factorisations, and of a small one
+// some 20 ms.
 constexpr double kFactorisations = 3.0;
+constexpr double kLeastWork = 1e4;
 
-double solution(std::size_t edges) { return kFactorisations * static_cast<double>(edges); }
+double most_work(std::size_t edges) {
+  return std::max(kFactorisations * static_cast<double>(edges), kLeastWork);
+}
 
 }  // namespace
 
@@ -47,9 +51,8 @@ std::vector<LoopChange> OnlineConsensus<Pose>::Engine::add(VertexId from, Vertex
 }
 
 template <class Pose>
-void OnlineConsensus<Pose>::Engine::add_silently(VertexId from, VertexId to,
-                                                 const Pose& T_from_to, const Matrix& information,
-                                                 LinkKind link) {
+void OnlineConsensus<Pose>::Engine::add_silently(VertexId from, VertexId to, const Pose& T_from_to,
+                                                 const Matrix& information, LinkKind link) {
   const bool step = log_.add(from, to, T_from_to, information, link).step;
   rows_.emplace_back();
   if (!step) ++loops_;
@@ -67,20 +70,20 @@ template <class Pose>
 void OnlineConsensus<Pose>::Engine::go_on() {
   ask_to_go_on();
   if (loops_ == 0) return;
-  const auto work = solution(rows_.size());
-  const bool few = loops_ <= kAtOnce;
-  search_everywhere(few ? kNoLimit : std::min(work, search_work_ / kUntil));
+  const auto work = most_work(rows_.size());
+  const bool few = searched_ <= kFew;
+  search_everywhere(!map_ ? kNoLimit : few ? work : std::min(work, search_work_ / kUntil));
   follow_up(std::min(credit_, work));
 }
 
-// From every start, where loops have grown enough for that.
+// The first loop's, to hold others against; then from every start, where loops have grown enough.
 template <class Pose>
 void OnlineConsensus<Pose>::Engine::search_everywhere(double budget) {
-  const double growth = loops_ <= kAtOnce ? kHalfMore : kDoubled;
   if (!everywhere_) {
-    if (loops_ == searched_ || loops_ < growth * searched_) return;
-    searched_ = loops_;
-    everywhere_ = begin(true);
+    const bool due = loops_ >= kFirst && loops_ >= kGrowth * searched_;
+    if (!due && map_) return;
+    if (due) searched_ = loops_;
+    everywhere_ = begin(due);
   }
   if (!run(*everywhere_, budget)) return;
   const auto map = everywhere_->map;
@@ -103,8 +106,8 @@ void OnlineConsensus<Pose>::Engine::follow_up(double budget) {
   if (!next_) {
     const auto seen = static_cast<Index>(map_->graph().constraints.size());
     const auto& edges = log_.edges();
-    const bool news = std::any_of(edges.begin() + seen, edges.end(),
-                                  [](const auto& edge) { return !edge.step; });
+    const bool news =
+        std::any_of(edges.begin() + seen, edges.end(), [](const auto& edge) { return !edge.step; });
     if (!news && !rival_) return;
     next_ = begin(false);
     rival_.reset();
@@ -225,9 +228,9 @@ std::vector<LoopChange> OnlineConsensus<Pose>::Engine::changes() {
 template <class Pose>
 std::vector<LoopChange> OnlineConsensus<Pose>::Engine::catch_up() {
   if (loops_ > 0) {
-    everywhere_.reset();
     next_.reset();
-    searched_ = 0;
+    everywhere_ = begin(loops_ >= kFirst);
+    searched_ = loops_;
     search_everywhere(kNoLimit);
     credit_ = 0.0;
   }

@@ -80,7 +80,7 @@ class OnlineConsensus<Pose>::Engine {
   std::optional<detail::Outlook<Pose>> outlook_;
   std::optional<Search> everywhere_;
   std::optional<Search> next_;
-  Index searched_ = 0;       // loops at the last search from every start
+  Index searched_ = 0;        // loops at the last search from every start
   double search_work_ = 0.0;  // of that, an edge
   double credit_ = 0.0;       // work that following up may do
 };

@@ -103,13 +103,13 @@ OnlineConsensus<Pose> OnlineConsensus<Pose>::load(std::istream& in, const Online
                                                   RunContext run) {
   OnlineConsensus<Pose> online(options, std::move(run));
   auto& engine = *online.engine_;
-  detail::read_edges<Pose>(in, {
-      [&](VertexId id, const Pose& pose) { engine.log().set_pose(id, pose); },
-      [&](VertexId id) { engine.log().fix(id); },
-      [&](const auto& edge) {
-        engine.add_silently(edge.from, edge.to, edge.measured.T_from_to, edge.measured.information,
-                            edge.measured.link);
-      }});
+  detail::read_edges<Pose>(in,
+                           {[&](VertexId id, const Pose& pose) { engine.log().set_pose(id, pose); },
+                            [&](VertexId id) { engine.log().fix(id); },
+                            [&](const auto& edge) {
+                              engine.add_silently(edge.from, edge.to, edge.measured.T_from_to,
+                                                  edge.measured.information, edge.measured.link);
+                            }});
   engine.catch_up();
   engine.written() = {engine.log().posed().size(), engine.log().fixed().size(),
                       engine.log().edges().size(), true};

@@ -43,8 +43,7 @@ template <class Pose>
 std::optional<typename Outlook<Pose>::Place> Outlook<Pose>::place(VertexId id) const {
   Place found;
   UncertainPose<Pose> since;
-  const typename Pose::Tangent variances =
-      map_.best().scale.odometry * map_.best().shapes.odometry;
+  const typename Pose::Tangent variances = map_.best().scale.odometry * map_.best().shapes.odometry;
   std::optional<typename Snapshot<Pose>::Anchor> anchor;
   while (true) {
     const auto vertex = map_.graph().find(id);
@@ -74,8 +73,7 @@ std::optional<UncertainPose<Pose>> Outlook<Pose>::tail(VertexId from, VertexId t
     if (back) back = inverse(*back);
     return back;
   }
-  const typename Pose::Tangent variances =
-      map_.best().scale.odometry * map_.best().shapes.odometry;
+  const typename Pose::Tangent variances = map_.best().scale.odometry * map_.best().shapes.odometry;
   UncertainPose<Pose> path;
   while (to != from) {
     const auto* step = log_.step_to(to);
@@ -129,8 +127,7 @@ Standing Outlook<Pose>::standing(Index edge) const {
     standing.parts.second = 1;
   }
   const Place nowhere{.chain = -1};
-  standing.evidence =
-      density - log_alternative(edge, a ? *a : nowhere, b ? *b : nowhere, Sigma);
+  standing.evidence = density - log_alternative(edge, a ? *a : nowhere, b ? *b : nowhere, Sigma);
   standing.log_odds = standing.evidence + prior_;
   return standing;
 }

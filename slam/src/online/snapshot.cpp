@@ -9,10 +9,17 @@
 #include "graph/candidate_verdicts.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/slam/graph/usable_odometry.hpp"
+#include "prune/consensus/climb/report.hpp"
 #include "prune/consensus/climb/starts.hpp"
 #include "prune/consensus/judge.hpp"
 
 namespace isotherm::slam::detail {
+namespace {
+
+// Times as many edges until the density of near pairs is found anew.
+constexpr double kGrown = 1.1;
+
+}  // namespace
 
 template <class Pose>
 Snapshot<Pose>::Snapshot(PoseGraph<Pose> graph, const ConsensusOptions& options)
@@ -37,6 +44,7 @@ void Snapshot<Pose>::explain(const std::vector<const Snapshot*>& others, bool ev
                              const Pace& pace) {
   prepare(pace);
   if (!explained()) return judge();
+  nearness_of_ = graph_.constraints.size();
   bool found = false;
   const auto add = [&](const Explanation<Pose>& next) {
     const bool better = !found || next.evidence > best_.evidence;
@@ -47,14 +55,23 @@ void Snapshot<Pose>::explain(const std::vector<const Snapshot*>& others, bool ev
   for (const Snapshot* other : others) {
     if (!other->explained()) continue;
     auto [explanation, findings] = carry(*other);
+    const bool about_the_same = static_cast<double>(graph_.constraints.size()) <
+                                kGrown * static_cast<double>(other->nearness_of_);
+    if (about_the_same) nearness_of_ = other->nearness_of_;
+    climb_->hold_nearness(!everywhere && about_the_same);
     add(climb_->resume(std::move(explanation), std::move(findings)));
   }
-  if (everywhere || !found) {
+  climb_->hold_nearness(false);
+  if (everywhere) {
+    nearness_of_ = graph_.constraints.size();
     add(climb_->nothing());
     climb_from_each_start(options_.calibrate, [&](const CovarianceScale& start) {
       surpassed_ = add(climb_->from(start)) || surpassed_;
     });
+  } else if (!found) {
+    add(climb_->from({}));
   }
+  climb_->hold_nearness(!everywhere);
   climb_->stand_at(best_);
   judge();
 }

@@ -19,8 +19,8 @@ class Snapshot {
   Snapshot(const Snapshot&) = delete;  // its parts refer to each other
   Snapshot& operator=(const Snapshot&) = delete;
 
-  /// Looks for the explanation: from where the others stand, the best of them first, and, if
-  /// `everywhere`, or none stands anywhere, from every start.
+  /// Looks for the explanation: from where the others stand, and, if `everywhere`, from every
+  /// start; where none stands anywhere from that of the file.
   /// @throws NumericalError, Cancelled
   void explain(const std::vector<const Snapshot*>& others, bool everywhere, const Pace& pace);
 
@@ -68,6 +68,7 @@ class Snapshot {
   std::optional<Climb<Pose>> climb_;
   Explanation<Pose> best_;
   bool surpassed_ = false;
+  std::size_t nearness_of_ = 0;  // edges of the graph that the density of near pairs is of
   PruneResult verdicts_;
 };
 

@@ -21,6 +21,10 @@ class Assessment {
   /// Back to the layout of odometry.
   void start_over();
 
+  /// Whether the density of near pairs stays what it was found to be, whatever the layout: that
+  /// changes slowly, and takes longest on small graphs.
+  void hold_nearness(bool held) { nearness_held_ = held; }
+
   /// Sets the weights, the layout and the evidence of `now`.
   /// @throws NumericalError if the normal equations break down
   void assess(Explanation<Pose>& now);
@@ -71,6 +75,7 @@ class Assessment {
   Findings found_;
   Estimate<Pose> estimate_;
   typename Estimate<Pose>::Layout odometry_;
+  bool nearness_held_ = false;
 };
 
 extern template class Assessment<Pose2>;

@@ -31,6 +31,9 @@ class Climb {
   /// learnt while that helps, without looking for other scales. Later climbs know the peak.
   Explanation<Pose> resume(Explanation<Pose> before, typename Assessment<Pose>::Findings found);
 
+  /// See Assessment.
+  void hold_nearness(bool held) { assessment_.hold_nearness(held); }
+
   /// Goes back to an explanation that was found.
   void stand_at(const Explanation<Pose>& found);
 

@@ -15,10 +15,7 @@ constexpr double kSettled = 0.1;
 
 template <class Pose>
 Estimate<Pose>::Estimate(const ReducedGraph<Pose>& graph, Pace pace)
-    : graph_(&graph),
-      poses_(graph.poses),
-      component_(graph.chain),
-      pace_(std::move(pace)) {}
+    : graph_(&graph), poses_(graph.poses), component_(graph.chain), pace_(std::move(pace)) {}
 
 template <class Pose>
 void Estimate<Pose>::use(const ReducedGraph<Pose>& graph) {
