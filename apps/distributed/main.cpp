@@ -26,9 +26,9 @@ Ending run_on_rank(const distributed::Session& session, int argc, char** argv) {
   root.set_version_flag("--version", ISOTHERM_VERSION);
   root.require_subcommand(1);
   root.formatter(std::make_shared<HelpFormatter>());
-  const std::vector<Verb> verbs = {add_distributed_embed(root, session),
-                                   add_distributed_edges(root, session),
-                                   add_distributed_heat(root, session)};
+  const std::vector<Verb> verbs = {
+      add_distributed_embed(root, session), add_distributed_edges(root, session),
+      add_distributed_prune(root, session), add_distributed_heat(root, session)};
   const auto words = command_words(argc, argv);
   try {
     // CLI11 takes them last first.

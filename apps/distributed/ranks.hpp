@@ -15,6 +15,7 @@ namespace distributed = spectral::distributed;
 
 Verb add_distributed_embed(CLI::App& root, const distributed::Session& session);
 Verb add_distributed_edges(CLI::App& root, const distributed::Session& session);
+Verb add_distributed_prune(CLI::App& root, const distributed::Session& session);
 Verb add_distributed_heat(CLI::App& root, const distributed::Session& session);
 
 /// Brings the options of a verb into force on every rank. True if they were only to be printed,

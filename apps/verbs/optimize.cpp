@@ -12,7 +12,6 @@
 #include "console.hpp"
 #include "help_formatter.hpp"
 #include "isotherm/base/words.hpp"
-#include "isotherm/slam/graph/trusted_edges.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm/slam/io/trajectory_file.hpp"
 #include "option_verb.hpp"
@@ -50,7 +49,7 @@ struct OptimizeVerb : OptionVerb<OptimizeOptions> {
 
   template <class Pose>
   int run_on(PoseGraph<Pose>& graph, const PoseGraphFile& file) {
-    const auto roles = trusted.empty() ? edge_roles(graph) : read_trusted_edges(trusted, graph);
+    const auto roles = roles_of(graph, trusted);
     warn_of_doubts(graph, roles, flags);
     const auto result =
         optimize(graph, roles, options, {flags.threads, progress_line(flags), flags.seed});

@@ -6,7 +6,6 @@
 #include "console.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/slam/evaluate/labels.hpp"
-#include "isotherm/slam/graph/trusted_edges.hpp"
 #include "isotherm/slam/prune/loop_evidence.hpp"
 #include "isotherm/spectral/edges/verdict_file.hpp"
 #include "option_verb.hpp"
@@ -33,8 +32,7 @@ struct EvalEvidence : OptionVerb<ConsensusOptions> {
     auto file = read_input_graph(input, flags);
     const double evidence = std::visit(
         [&](const auto& graph) {
-          const auto roles =
-              trusted.empty() ? edge_roles(graph) : read_trusted_edges(trusted, graph);
+          const auto roles = roles_of(graph, trusted);
           return loop_evidence(graph, roles, kept, options, {flags.threads, progress_line(flags)});
         },
         file.graph);

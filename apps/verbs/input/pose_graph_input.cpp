@@ -10,6 +10,7 @@
 
 #include "console.hpp"
 #include "isotherm/base/words.hpp"
+#include "isotherm/slam/graph/trusted_edges.hpp"
 
 namespace isotherm::apps {
 namespace {
@@ -61,6 +62,14 @@ slam::PoseGraphFile read_input_graph(const std::vector<std::string>& paths,
 void add_graph_inputs(CLI::App& verb, std::vector<std::string>& paths, const std::string& help) {
   verb.add_option("input", paths, help)->required()->type_name("FILE");
 }
+
+template <class Pose>
+slam::EdgeRoles roles_of(const slam::PoseGraph<Pose>& graph, const std::string& trusted) {
+  return trusted.empty() ? slam::edge_roles(graph) : slam::read_trusted_edges(trusted, graph);
+}
+
+template slam::EdgeRoles roles_of(const slam::PoseGraph<slam::Pose2>&, const std::string&);
+template slam::EdgeRoles roles_of(const slam::PoseGraph<slam::Pose3>&, const std::string&);
 
 template <class Pose>
 std::vector<slam::Doubt> warn_of_doubts(const slam::PoseGraph<Pose>& graph,

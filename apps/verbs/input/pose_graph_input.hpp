@@ -23,6 +23,12 @@ slam::PoseGraphFile read_input_graph(const std::vector<std::string>& paths,
 /// The positional argument that names them.
 void add_graph_inputs(CLI::App& verb, std::vector<std::string>& paths, const std::string& help);
 
+/// What the edges are: as the file of --trusted says, or, where there is none, as edge_roles()
+/// does.
+/// @throws FileError, ParseError
+template <class Pose>
+slam::EdgeRoles roles_of(const slam::PoseGraph<Pose>& graph, const std::string& trusted);
+
 /// Warns of what is to be doubted about the graph as a whole before it is used, and gives all
 /// of it back.
 template <class Pose>

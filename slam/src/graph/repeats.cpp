@@ -8,6 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "graph/reversed.hpp"
+
 namespace isotherm::slam {
 namespace {
 
@@ -51,18 +53,6 @@ Statement<Pose> statement(const Constraint<Pose>& constraint, Index edge) {
   const auto& m = constraint.information;
   std::transform(m.data(), m.data() + m.size(), next, to_bits);
   return made;
-}
-
-// The same measurement told from the other end: its residuals are those of the constraint,
-// mapped by the adjoint.
-template <class Pose>
-Constraint<Pose> reversed(const Constraint<Pose>& constraint) {
-  Constraint<Pose> other = constraint;
-  std::swap(other.from, other.to);
-  other.T_from_to = constraint.T_from_to.inverse();
-  const typename Pose::Matrix adjoint = other.T_from_to.adjoint();
-  other.information = adjoint.transpose() * constraint.information * adjoint;
-  return other;
 }
 
 template <class Pose>
@@ -110,7 +100,7 @@ class Finder {
 
   // The first that says the same from the other end; the edge itself if none does.
   Index mirrored(const std::vector<Statement<Pose>>& sorted, Index edge) const {
-    const auto wanted = statement(reversed(graph_.constraints[edge]), 0);
+    const auto wanted = statement(detail::reversed(graph_.constraints[edge]), 0);
     const auto found = std::lower_bound(sorted.begin(), sorted.end(), wanted);
     return found != sorted.end() && found->says_the_same(wanted) ? found->edge : edge;
   }

@@ -25,7 +25,11 @@ class EdgeLog {
   /// The step that leads to a vertex from the one before it.
   struct Step {
     VertexId before = 0;
-    UncertainPose<Pose> path;  // from that one
+    UncertainPose<Pose> measured;  // as told from its own end (in_own_frame())
+    bool forward = true;           // told from that one
+
+    /// From that one, with these factors on the variances.
+    UncertainPose<Pose> path(const typename Pose::Tangent& variances) const;
   };
 
   /// @throws InvalidArgument for what is not finite, or no information

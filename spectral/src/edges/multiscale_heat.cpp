@@ -1,32 +1,21 @@
 #include "isotherm/spectral/edges/multiscale_heat.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "isotherm/base/error.hpp"
-#include "isotherm/base/text_writer.hpp"
-#include "isotherm/spectral/heat/heat_distance.hpp"
+#include "edges/algorithm1.hpp"
 #include "isotherm/spectral/heat/heat_scales.hpp"
 
 namespace isotherm::spectral {
 namespace {
 
-constexpr double kNoThreshold = std::numeric_limits<double>::infinity();
-
-double relative_to(double distance, double threshold) {
-  if (threshold > 0.0) return distance / threshold;
-  return distance > 0.0 ? kNoThreshold : 0.0;
-}
-
-// The state of Algorithm 1 between two scales.
-class Algorithm1 {
+// The whole graph, of which edges that are pruned are left out.
+class OneMachine {
  public:
-  Algorithm1(const WeightedGraph& graph, std::span<const Index> candidates,
-             const MultiscaleHeatOptions& options, const RunContext& run)
+  OneMachine(const WeightedGraph& graph, std::span<const Index> candidates, double tolerance,
+             const RunContext& run)
       : graph_(graph),
         candidates_(candidates),
-        options_(options),
+        tolerance_(tolerance),
         run_(run),
         keep_(graph.edges().size(), true) {
     for (const Index edge : candidates) {
@@ -34,94 +23,35 @@ class Algorithm1 {
         throw InvalidArgument("candidates", "no edge " + std::to_string(edge));
       }
     }
-    result_.verdicts.resize(candidates.size());
   }
 
-  MultiscaleHeat run() && {
-    const auto scales = options_.scales.empty() ? automatic_scales(graph_, run_) : options_.scales;
-    if (options_.konst.size() != 1 && options_.konst.size() != scales.size()) {
-      throw InvalidArgument("konst", "must have one entry, or one per scale");
-    }
-    for (std::size_t s = 0; s < scales.size(); ++s) prune_at(scales[s], s);
-    return std::move(result_);
-  }
+  std::vector<double> scales() const { return automatic_scales(graph_, run_); }
 
- private:
-  double konst_at(std::size_t scale) const {
-    return options_.konst.size() == 1 ? options_.konst.front() : options_.konst[scale];
-  }
-
-  std::vector<std::size_t> remaining_candidates() const {
-    std::vector<std::size_t> remaining;
-    for (std::size_t c = 0; c < candidates_.size(); ++c) {
-      if (!result_.verdicts[c].pruned) remaining.push_back(c);
-    }
-    return remaining;
-  }
-
-  std::vector<double> distances_at(double scale, const std::vector<std::size_t>& remaining) {
+  HeatDistanceResult distances(double scale, const std::vector<std::size_t>& remaining) const {
     std::vector<VertexPair> pairs;
     for (const std::size_t c : remaining) {
       const auto& edge = graph_.edge(candidates_[c]);
       pairs.push_back({edge.from, edge.to});
     }
-    const auto graph = filter_edges(graph_, keep_);
-    const auto heat = heat_distances(
-        graph, pairs, std::vector<double>{scale},
-        {.tolerance = options_.tolerance, .threads = run_.threads, .progress = run_.progress});
-    result_.unconverged += heat.unconverged;
-    result_.widest_bracket = std::max(result_.widest_bracket, heat.widest);
-    return heat.column(0);
+    return heat_distances(
+        filter_edges(graph_, keep_), pairs, std::vector<double>{scale},
+        {.tolerance = tolerance_, .threads = run_.threads, .progress = run_.progress});
   }
 
-  Threshold threshold_at(std::size_t scale, const std::vector<double>& distances) const {
-    auto threshold =
-        find_threshold(distances, {.rule = options_.threshold, .konst = konst_at(scale)});
-    const bool adapts = options_.threshold != ThresholdRule::mean_sigma;
-    if (adapts && threshold.separation < options_.min_separation) threshold.value = kNoThreshold;
-    return threshold;
+  static Threshold threshold(const std::vector<double>& distances, const ThresholdOptions& rule) {
+    return find_threshold(distances, rule);
   }
 
-  void prune_at(double scale, std::size_t s) {
-    const auto remaining = remaining_candidates();
-    const auto distances = distances_at(scale, remaining);
-    auto threshold = threshold_at(s, distances);
-    // The mean of equal distances may be rounded to less than each.
-    if (scale == 0.0) threshold.value = kNoThreshold;
-    HeatRound round{scale,
-                    threshold.value,
-                    threshold.separation,
-                    0.0,
-                    static_cast<std::int64_t>(remaining.size()),
-                    0};
-    if (options_.threshold == ThresholdRule::mean_sigma) round.konst = konst_at(s);
-    std::vector<double> all(candidates_.size(), std::numeric_limits<double>::quiet_NaN());
-    for (std::size_t k = 0; k < remaining.size(); ++k) {
-      all[remaining[k]] = distances[k];
-      if (decide(remaining[k], distances[k], round)) ++round.pruned;
-    }
-    result_.rounds.push_back(round);
-    result_.distances.push_back(std::move(all));
-  }
+  static std::int64_t total(std::int64_t mine) { return mine; }
 
-  bool decide(std::size_t candidate, double distance, const HeatRound& round) {
-    auto& verdict = result_.verdicts[candidate];
-    const double score = relative_to(distance, round.threshold);
-    verdict.pruned = distance > round.threshold;
-    if (verdict.pruned) keep_[candidates_[candidate]] = false;
-    if (verdict.pruned || verdict.stage.empty() || score > verdict.score) {
-      verdict.score = score;
-      verdict.stage = "t=" + format_number(round.scale);
-    }
-    return verdict.pruned;
-  }
+  void remove(std::size_t candidate) { keep_[candidates_[candidate]] = false; }
 
+ private:
   const WeightedGraph& graph_;
   std::span<const Index> candidates_;
-  const MultiscaleHeatOptions& options_;
+  double tolerance_;
   const RunContext& run_;
   std::vector<bool> keep_;
-  MultiscaleHeat result_;
 };
 
 }  // namespace
@@ -151,7 +81,9 @@ void MultiscaleHeatOptions::validate() const {
 MultiscaleHeat multiscale_heat(const WeightedGraph& graph, std::span<const Index> candidates,
                                const MultiscaleHeatOptions& options, const RunContext& run) {
   options.validate();
-  return Algorithm1(graph, candidates, options, run).run();
+  return detail::Algorithm1(OneMachine(graph, candidates, options.tolerance, run),
+                            candidates.size(), options)
+      .run();
 }
 
 }  // namespace isotherm::spectral

@@ -95,6 +95,40 @@ def edges_do_not_depend_on_ranks(folder):
     expect("prune" in {row[3] for row in texts[1][1]}, "should prune some")
 
 
+def write_g2o(path, poses, seed=2):
+    """A straight drive with loops of a few steps, as measured, and some that are far from it."""
+    chance = random.Random(seed)
+    information = "100 0 0 100 0 100"
+    lines = [f"VERTEX_SE2 {pose} {pose} 0 0" for pose in range(poses)]
+    lines += [f"EDGE_SE2 {pose} {pose + 1} 1 0 0 {information}" for pose in range(poses - 1)]
+    for _ in range(poses // 10):
+        start, step = chance.randrange(poses - 20), chance.randrange(5, 15)
+        lines.append(f"EDGE_SE2 {start} {start + step} {step} 0 0 {information}")
+    first_false = len(lines) - poses
+    for _ in range(poses // 40):
+        start = chance.randrange(poses // 3)
+        lines.append(f"EDGE_SE2 {start} {start + poses // 2} 0 0 0 {information}")
+    Path(path).write_text("\n".join(lines) + "\n")
+    return first_false
+
+
+def prunes_as_on_one_rank(folder):
+    first_false = write_g2o(folder / "graph.g2o", 400)
+    texts = {}
+    for ranks in (1, 4):
+        code, _, err = run(folder, ranks, "prune", "graph.g2o", "-o", "kept.g2o", "--verdicts",
+                           "verdicts.csv", "--json", "result.json", "--scales", "50,5")
+        expect(code == OK and err.count("heat: 50 loops, 40 kept, 10 pruned") == 1, err)
+        rows = [row.split(",") for row in (folder / "verdicts.csv").read_text().splitlines()]
+        texts[ranks] = ((folder / "kept.g2o").read_text(), [row[:4] for row in rows])
+    expect(texts[1] == texts[4], "decisions")
+    expect({row[3] for row in texts[1][1][1:] if int(row[0]) >= first_false} == {"prune"}, "false")
+    code, _, err = run(folder, 2, "prune", "absent.g2o", "-o", "out.g2o")
+    expect(code == BAD_INPUT and err.count("isotherm:") == 1, err)
+    code, _, err = run(folder, 2, "prune", "graph.g2o", "--trusted", "graph.g2o")
+    expect(code == BAD_INPUT and err.count("isotherm:") == 1, err)
+
+
 def pairs_of_a_file(folder):
     write_pose_graph(folder / "graph.csv", 500)
     (folder / "pairs.csv").write_text("from,to\n3,400\n7,7\n")
@@ -175,7 +209,7 @@ def interrupted(folder):
 
 
 CASES = [rows_do_not_depend_on_ranks, embeds_in_both_formats,
-         edges_do_not_depend_on_ranks, pairs_of_a_file,
+         edges_do_not_depend_on_ranks, prunes_as_on_one_rank, pairs_of_a_file,
          more_ranks_than_vertices, bad_input_is_told_once, cut_off_binary_graph, too_few_steps,
          killed_rank, interrupted]
 

@@ -56,7 +56,7 @@ TEST(DistributedEdges, FilteredGraphsKeepTheirVertices) {
   EXPECT_THROW(graph.filtered(keep), InvalidArgument);
 }
 
-TEST(DistributedEdges, Algorithm1DecidesAsOnOneMachine) {
+void expect_decisions_of_one_machine(const MultiscaleHeatOptions& options) {
   Random random(33);
   const auto path = path_graph(200);
   std::vector<WeightedEdge> edges(path.edges().begin(), path.edges().end());
@@ -68,7 +68,6 @@ TEST(DistributedEdges, Algorithm1DecidesAsOnOneMachine) {
     edges.push_back({from, to, 1.0});
   }
   const WeightedGraph graph(200, edges);
-  const MultiscaleHeatOptions options{.scales = {100, 10, 1}, .tolerance = 1e-9};
   const auto exact = multiscale_heat(graph, candidates, options);
   const auto mine = distribute(graph);
   const auto numbered = mine.edges();
@@ -90,8 +89,14 @@ TEST(DistributedEdges, Algorithm1DecidesAsOnOneMachine) {
     EXPECT_NEAR(found.verdicts[k].score, other.score, 1e-6 * other.score);
     EXPECT_EQ(found.verdicts[k].stage, other.stage);
   }
-  EXPECT_THROW(distributed::multiscale_heat(mine, candidate, {.threshold = ThresholdRule::otsu}),
-               InvalidArgument);
+}
+
+TEST(DistributedEdges, Algorithm1DecidesAsOnOneMachine) {
+  for (const auto rule : {ThresholdRule::mean_sigma, ThresholdRule::otsu}) {
+    SCOPED_TRACE(enum_name(rule));
+    expect_decisions_of_one_machine(
+        {.scales = {100, 10, 1}, .threshold = rule, .min_separation = 0.0, .tolerance = 1e-9});
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/statistics.hpp"
 #include "prune/consensus/judge.hpp"
+#include "prune/consensus/objective/own_frames.hpp"
 #include "prune/consensus/objective/scale_prior.hpp"
 #include "prune/consensus/objective/scaled_graph.hpp"
 #include "prune/consensus/pairs/conflicts.hpp"
@@ -37,7 +38,8 @@ void add_conflicts(const PoseGraph<Pose>& graph, const EdgeRoles& roles, double 
   const detail::CovarianceScale scale = {result.odometry_scale, result.loop_scale};
   const detail::Shapes<Pose> shapes = {shape_of<Pose>(result.odometry_scales, scale.odometry),
                                        shape_of<Pose>(result.loop_scales, scale.loops)};
-  const auto reduced = detail::scaled_graph(graph, roles, shapes).reduced;
+  const auto reduced =
+      detail::scaled_graph(detail::in_own_frames(graph, roles), roles, shapes).reduced;
   const double gate = chi_squared_quantile(1.0 - significance, Pose::kDof);
   auto conflicts = detail::name_conflicts(reduced, scale, gate, kept, pruned);
   for (std::size_t k = 0; k < conflicts.size(); ++k) {

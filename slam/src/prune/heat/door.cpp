@@ -1,13 +1,11 @@
 #include <string>
+#include <utility>
 
 #include "isotherm/slam/prune/prune.hpp"
 
-namespace isotherm::slam::detail {
+namespace isotherm::slam {
 
-template <class Pose>
-PruneResult prune_by(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                     const HeatPruneOptions& options, const RunContext& run) {
-  auto found = heat_prune(graph, roles, options, run);
+PruneResult prune_result(HeatPruneResult found) {
   PruneResult result;
   result.method = HeatPruneOptions::method();
   result.verdicts = std::move(found.verdicts);
@@ -19,9 +17,19 @@ PruneResult prune_by(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
   return result;
 }
 
+namespace detail {
+
+template <class Pose>
+PruneResult prune_by(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                     const HeatPruneOptions& options, const RunContext& run) {
+  return prune_result(heat_prune(graph, roles, options, run));
+}
+
 template PruneResult prune_by(const PoseGraph<Pose2>&, const EdgeRoles&, const HeatPruneOptions&,
                               const RunContext&);
 template PruneResult prune_by(const PoseGraph<Pose3>&, const EdgeRoles&, const HeatPruneOptions&,
                               const RunContext&);
 
-}  // namespace isotherm::slam::detail
+}  // namespace detail
+
+}  // namespace isotherm::slam

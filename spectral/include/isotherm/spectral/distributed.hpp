@@ -273,8 +273,9 @@ ProjectedResistances project_resistances(const Graph& graph, const ProjectionOpt
 std::vector<bool> find_bridges(const Graph& graph);
 
 /// Algorithm 1, as spectral::multiscale_heat(), on those of this rank's edges() of which
-/// `candidate` says so; a verdict for each of edges(), also where it is no candidate. Only
-/// threshold mean-sigma. `rounds` are the same on all ranks; `distances` are left empty.
+/// `candidate` says so; a verdict for each of edges(), also where it is no candidate. Thresholds
+/// other than mean-sigma see all distances: 8 bytes a candidate on every rank. `rounds` are the
+/// same on all ranks; `distances` are left empty.
 /// @throws InvalidArgument, Cancelled
 MultiscaleHeat multiscale_heat(const Graph& graph, const std::vector<bool>& candidate,
                                const MultiscaleHeatOptions& options = {},

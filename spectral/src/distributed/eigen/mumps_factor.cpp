@@ -7,17 +7,12 @@
 namespace isotherm::spectral::distributed::detail {
 namespace {
 
-// Below so many rows rank 0 orders a matrix alone, which needs its pattern in one place.
-constexpr PetscInt kOrderedByOne = 100'000;
-
 // Numbers of MUMPS's controls, by its manual.
-constexpr PetscInt kRootNode = 13, kSpareRoom = 14, kNullPivots = 24, kAnalysis = 28,
-                   kParallelOrdering = 29;
+constexpr PetscInt kRootNode = 13, kSpareRoom = 14, kNullPivots = 24, kAnalysis = 28;
+constexpr PetscInt kOnRank0 = 1;
 constexpr PetscInt kExpectedMegabytes = 16;  // among its INFOG: of the rank that needs most
 
-// Of its errors: that it was built with no ordering that ranks find together, and those for which
-// its manual says to give it more room.
-constexpr PetscInt kNoParallelOrdering = -38;
+// Of its errors, those for which its manual says to give it more room.
 constexpr PetscInt kIntegersTooSmall = -8, kNumbersTooSmall = -9;
 // Delayed pivots take more room than the analysis foresees: so many per cent.
 constexpr PetscInt kSpare = 50, kMostSpare = 3200;
@@ -31,13 +26,6 @@ MumpsFactor::MumpsFactor(const Comm& comm, Mat matrix, For purpose)
 }
 
 void MumpsFactor::analyse(PetscInt spare) {
-  PetscInt rows = 0;
-  check(MatGetSize(matrix_, &rows, nullptr));
-  const bool large = comm_.size > 1 && rows > kOrderedByOne;
-  if (!large || !analyse(spare, true)) analyse(spare, false);
-}
-
-bool MumpsFactor::analyse(PetscInt spare, bool on_all_ranks) {
   check(MatGetFactor(matrix_, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, factor_.out()));
   check(MatMumpsSetIcntl(factor_.get(), kSpareRoom, spare));
   if (purpose_ == For::counting) {
@@ -45,9 +33,12 @@ bool MumpsFactor::analyse(PetscInt spare, bool on_all_ranks) {
     check(MatMumpsSetIcntl(factor_.get(), kRootNode, 1));
     check(MatMumpsSetIcntl(factor_.get(), kNullPivots, 1));
   }
-  check(MatMumpsSetIcntl(factor_.get(), kAnalysis, on_all_ranks ? 2 : 1));
+  // Asked for an ordering that all ranks find together, a MUMPS that was built without one, as
+  // Debian's is, says so on stdout, which is for results.
+  PetscBool chosen = PETSC_FALSE;
+  check(PetscOptionsHasName(nullptr, nullptr, "-mat_mumps_icntl_28", &chosen));
+  if (chosen == PETSC_FALSE) check(MatMumpsSetIcntl(factor_.get(), kAnalysis, kOnRank0));
   check(MatCholeskyFactorSymbolic(factor_.get(), matrix_, nullptr, &info_));
-  return infog(1) != kNoParallelOrdering;
 }
 
 PetscInt MumpsFactor::infog(PetscInt number) const {

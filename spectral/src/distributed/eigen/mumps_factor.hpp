@@ -7,8 +7,9 @@
 
 namespace isotherm::spectral::distributed::detail {
 
-/// A symmetric factorisation by MUMPS. Where it is large, the ordering is found by all ranks, too,
-/// if MUMPS was built for that; else rank 0 has the pattern of the whole matrix for a while.
+/// A symmetric factorisation by MUMPS. For its ordering rank 0 has the pattern of the whole matrix
+/// for a while; where MUMPS was built for it, PETSc's option -mat_mumps_icntl_28 2 has all ranks
+/// find one.
 class MumpsFactor {
  public:
   enum class For { solving, counting };
@@ -29,7 +30,6 @@ class MumpsFactor {
 
  private:
   void analyse(PetscInt spare);
-  bool analyse(PetscInt spare, bool on_all_ranks);  // whether it could be done
   PetscInt infog(PetscInt number) const;
 
   const Comm& comm_;

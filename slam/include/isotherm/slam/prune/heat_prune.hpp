@@ -96,6 +96,31 @@ template <class Pose>
 HeatPruneResult heat_prune(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                            const HeatPruneOptions& options = {}, const RunContext& run = {});
 
+/// What heat_prune() asks of a plain graph: which of these edges are false? For who has another
+/// engine to answer it than multiscale_heat(), as several machines (docs/distributed.md).
+struct HeatQuestion {
+  InducedGraph induced;
+  std::vector<std::size_t> candidates;  ///< positions in EdgeRoles::candidates that have an edge
+  std::vector<Index> edges;             ///< theirs, in the induced graph
+};
+
+/// What of the options is for multiscale_heat().
+spectral::MultiscaleHeatOptions multiscale_options(const HeatPruneOptions& options);
+
+/// @throws InvalidArgument, Cancelled
+template <class Pose>
+HeatQuestion heat_question(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                           const HeatPruneOptions& options = {}, const RunContext& run = {});
+
+/// The decisions about all candidates, given what was found for those of `question`. No distances
+/// in the answer: none in the result.
+template <class Pose>
+HeatPruneResult heat_verdicts(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                              const HeatQuestion& question, spectral::MultiscaleHeat answer);
+
+/// As prune() gives it, but for its seconds.
+PruneResult prune_result(HeatPruneResult found);
+
 namespace detail {
 
 /// The door of the method's room, through which prune() comes.

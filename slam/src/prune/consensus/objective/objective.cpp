@@ -7,6 +7,7 @@
 
 #include "prune/consensus/estimate/log_normal.hpp"
 #include "prune/consensus/estimate/map_volume.hpp"
+#include "prune/consensus/objective/own_frames.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -21,7 +22,7 @@ double log_beta_binomial(double kept, double all) {
 template <class Pose>
 Objective<Pose>::Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles, Index window,
                            bool calibrate)
-    : graph_(graph),
+    : graph_(in_own_frames(graph, roles)),
       roles_(roles),
       stated_(scaled({})),
       near_(stated_.reduced),

@@ -56,7 +56,7 @@ class Objective {
  public:
   using NearByClass = std::array<double, kProposalClasses>;
 
-  /// `graph` and `roles` must outlive this object. Loops whose ends lie within `window` vertices of
+  /// `roles` must outlive this object. Loops whose ends lie within `window` vertices of
   /// another's can be in one run. Without `calibrate` the scales are known.
   Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles, Index window,
             bool calibrate = true);
@@ -99,7 +99,7 @@ class Objective {
   double loops_fit(const Explanation<Pose>& explanation, const ScaledGraph<Pose>& graph,
                    const Estimate<Pose>& estimate) const;
 
-  const PoseGraph<Pose>& graph_;
+  PoseGraph<Pose> graph_;  // in_own_frames()
   const EdgeRoles& roles_;
   ScaledGraph<Pose> stated_;
   NearDensity<Pose> near_;

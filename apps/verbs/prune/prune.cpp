@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <variant>
@@ -8,18 +7,16 @@
 #include <fmt/format.h>
 
 #include "console.hpp"
-#include "isotherm/base/words.hpp"
 #include "isotherm/slam/evaluate/ground_truth.hpp"
-#include "isotherm/slam/graph/trusted_edges.hpp"
 #include "isotherm/slam/graph/usable_odometry.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm/slam/pipeline.hpp"
-#include "isotherm/spectral/edges/verdict_file.hpp"
 #include "report/build/pose_graph_report.hpp"
 #include "report/report_flags.hpp"
 #include "verbs/input/pose_graph_input.hpp"
 #include "verbs/input/truth_input.hpp"
-#include "verbs/prune_flags.hpp"
+#include "verbs/prune/prune_flags.hpp"
+#include "verbs/prune/prune_result.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {
@@ -27,69 +24,6 @@ namespace {
 
 using namespace slam;
 using spectral::Verdict;
-
-// JSON has no infinity; null stands for "no threshold".
-Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
-Json to_json(const HeatRound& round) {
-  return {{"scale", round.scale},           {"threshold", finite_or_null(round.threshold)},
-          {"separation", round.separation}, {"konst", round.konst},
-          {"candidates", round.candidates}, {"pruned", round.pruned}};
-}
-
-// Why each candidate was decided as it was; edges are numbered as in the verdicts.
-Json to_json(const ConsensusDetail& detail, std::size_t candidate,
-             const spectral::EdgeVerdicts& verdicts) {
-  Json conflicts = Json::array();
-  for (const Index other : detail.conflicts) conflicts.push_back(verdicts[other].edge);
-  return {{"edge", verdicts[candidate].edge},
-          {"probability", finite_or_null(verdicts[candidate].probability)},
-          {"evidence", finite_or_null(detail.evidence)},
-          {"chi2", finite_or_null(detail.chi2)},
-          {"connected", detail.connected},
-          {"conflicts", std::move(conflicts)}};
-}
-
-Json to_json(const ConsensusResult& result, const spectral::EdgeVerdicts& verdicts) {
-  Json json = {{"log_evidence", finite_or_null(result.log_evidence)},
-               {"odometry_scale", result.odometry_scale},
-               {"loop_scale", result.loop_scale},
-               {"odometry_scales", result.odometry_scales},
-               {"loop_scales", result.loop_scales},
-               {"rotation_scale", result.rotation_scale},
-               {"share_as_stated", result.share_as_stated},
-               {"settled", result.settled},
-               {"moves", Json::array()},
-               {"loops", Json::array()}};
-  for (const auto& move : result.moves) {
-    json["moves"].push_back(
-        {{"accepted", move.accepted}, {"dropped", move.dropped}, {"in_force", move.in_force}});
-  }
-  for (std::size_t k = 0; k < result.details.size(); ++k) {
-    json["loops"].push_back(to_json(result.details[k], k, verdicts));
-  }
-  return json;
-}
-
-Json to_json(const PruneResult& result, const PruneOptions& options) {
-  Json json = {{"schema", "isotherm.prune/1"},
-               {"method", result.method},
-               {"candidates", result.verdicts.size()},
-               {"kept", count(result.verdicts, Verdict::keep)},
-               {"pruned", count(result.verdicts, Verdict::prune)},
-               {"ambiguous", count(result.verdicts, Verdict::ambiguous)},
-               {"seconds", result.seconds},
-               {"warnings", result.warnings},
-               {"options", options_to_json(options)}};
-  if (!result.rounds.empty()) {
-    json["rounds"] = Json::array();
-    for (const auto& round : result.rounds) json["rounds"].push_back(to_json(round));
-  }
-  if (result.method == ConsensusOptions::method()) {
-    json["consensus"] = to_json(result.consensus, result.verdicts);
-  }
-  return json;
-}
 
 struct PruneVerb {
   CommonFlags flags;
@@ -120,7 +54,7 @@ struct PruneVerb {
   template <class Pose>
   void run_on(PoseGraph<Pose>& graph, const PoseGraphFile& file) {
     const RunContext context{flags.threads, progress_line(flags), flags.seed};
-    const auto roles = trusted.empty() ? edge_roles(graph) : read_trusted_edges(trusted, graph);
+    const auto roles = roles_of(graph, trusted);
     if (flags.strict) require_usable_odometry(graph, roles, file);
     PruneRun<Pose> input_run{files_title(input), options, {}, robots_of(file)};
     if (!truth.path.empty()) input_run.truth = read_truth(graph, truth, flags);
@@ -129,19 +63,14 @@ struct PruneVerb {
       doubts.push_back({"angles in degrees", ""});  // said when they were read
     }
     auto result = prune_and_optimize(graph, roles, options, context);
-    report(result.decisions);
+    tell(result.decisions, flags);
     warn_of_loss(result.decisions.verdicts, doubts);
     std::optional<Report> page;
     if (explain.wanted()) page = pose_graph_report(graph, result, input_run, context);
     // Poses stay as they came: they are for 'optimize' to find.
     graph.constraints = std::move(result.pruned.constraints);
     if (!output.empty()) write_g2o(output, file);
-    if (!verdicts.empty()) {
-      const bool lettered = std::any_of(graph.ids.begin(), graph.ids.end(),
-                                        [](VertexId id) { return !robot_letter(id).empty(); });
-      spectral::write_verdicts(verdicts, result.decisions.verdicts,
-                               lettered ? vertex_name : spectral::VertexNames());
-    }
+    if (!verdicts.empty()) write_loop_verdicts(verdicts, result.decisions.verdicts, graph.ids);
     write_json(flags.json, to_json(result.decisions, options.prune));
     if (page) write_report(explain, *page);
   }
@@ -179,23 +108,6 @@ struct PruneVerb {
     if (!truth.timestamps.empty() && truth.path.empty()) {
       throw InvalidArgument("--timestamps", "are those of --ground-truth, which is missing");
     }
-  }
-
-  void report(const PruneResult& result) const {
-    for (const auto& warning : result.warnings) warn(flags, warning);
-    for (const auto& move : result.consensus.moves) {
-      detail_line(flags, fmt::format("{} loops accepted, {} dropped, {} in force", move.accepted,
-                                     move.dropped, move.in_force));
-    }
-    for (const auto& round : result.rounds) {
-      detail_line(flags, fmt::format("scale {:>6}: {} of {} loops pruned, threshold {:.4g}",
-                                     round.scale, round.pruned, round.candidates, round.threshold));
-    }
-    say(flags,
-        fmt::format("{}: {}, {} kept, {} pruned, {} ambiguous, {:.2f} s", result.method,
-                    counted(result.verdicts.size(), "loop"), count(result.verdicts, Verdict::keep),
-                    count(result.verdicts, Verdict::prune),
-                    count(result.verdicts, Verdict::ambiguous), result.seconds));
   }
 };
 

@@ -1,4 +1,4 @@
-#include "verbs/prune_flags.hpp"
+#include "verbs/prune/prune_flags.hpp"
 
 #include <array>
 #include <concepts>
