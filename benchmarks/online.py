@@ -22,8 +22,8 @@ from support.runs import Command, Results, read_csv, run_all
 
 GRAPHS = ["intel", "CSAIL", "kitti_00", "ringCity", "B25b_0.600", "sphere2500",
           "parking-garage", "city10000"]
-TYPES = ["random", "random-grouped", "local-grouped"]
-FRACTIONS = [0.3, 0.5]
+TYPES = ["random-grouped", "local-grouped", "random"]
+FRACTIONS = [0.5, 0.3]
 COLUMNS = ["graph", "type", "fraction", "edges", "loops", "median_ms", "p99_ms", "worst_ms",
            "seconds", "batch_seconds", "ratio", "differ", "precision", "recall",
            "mean_precision", "mean_recall", "delay_median", "delay_90"]
@@ -149,14 +149,16 @@ def main():
     parser.add_argument("--graphs", nargs="+", default=GRAPHS, choices=GRAPHS)
     arguments = parser.parse_args()
     command, results = Command(arguments.command), Results(ROOT / "build" / "online")
-    cells = [(graph, kind, fraction) for graph in arguments.graphs
-             for kind, fraction in [("clean", 0.0)] + [(k, f) for k in TYPES for f in FRACTIONS]]
+    # What differs most comes first, for runs that are cut short.
+    kinds = [("clean", 0.0)] + [(kind, share) for share in FRACTIONS for kind in TYPES]
+    cells = [(graph, kind, share) for kind, share in kinds for graph in arguments.graphs]
     tasks = {f"{graph} {kind} {fraction}": functools.partial(measure, command, arguments.data, graph,
                                                              kind, fraction)
              for graph, kind, fraction in cells}
     if not arguments.page_only:
         run_all(tasks, results, arguments.jobs)
     rows = [row for row in map(results.get, tasks) if row and "failed" not in row]
+    rows.sort(key=lambda row: GRAPHS.index(row["graph"]))
     folder = ROOT / "docs" / "results"
     with open(folder / "data" / "online.csv", "w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, COLUMNS)

@@ -6,6 +6,7 @@
 #include "io/information_check.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/slam/graph/information.hpp"
+#include "prune/consensus/objective/own_frames.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -19,10 +20,14 @@ bool same(const Pose3& a, const Pose3& b) {
 }
 
 template <class Pose>
-UncertainPose<Pose> forward(const typename EdgeLog<Pose>::Edge& edge) {
-  const UncertainPose<Pose> path{
-      edge.measured.T_from_to, covariance_from_information<Pose::kDof>(edge.measured.information)};
-  return edge.from < edge.to ? path : inverse(path);
+typename EdgeLog<Pose>::Step step_of(const typename EdgeLog<Pose>::Edge& edge) {
+  auto told = edge.measured;
+  told.from = edge.from < edge.to ? 0 : 1;
+  told.to = 1 - told.from;
+  told = in_own_frame(told);
+  return {std::min(edge.from, edge.to),
+          {told.T_from_to, covariance_from_information<Pose::kDof>(told.information)},
+          told.from < told.to};
 }
 
 }  // namespace
@@ -41,7 +46,7 @@ const typename EdgeLog<Pose>::Edge& EdgeLog<Pose>::add(VertexId from, VertexId t
   ids_.insert(to);
   edge.step = is_step(edge);
   if (edge.step) {
-    steps_.try_emplace(std::max(from, to), Step{std::min(from, to), forward<Pose>(edge)});
+    steps_.try_emplace(std::max(from, to), step_of<Pose>(edge));
   }
   between_[{from, to}].push_back(static_cast<Index>(edges_.size()));
   return edges_.emplace_back(edge);
@@ -75,6 +80,14 @@ template <class Pose>
 const typename EdgeLog<Pose>::Step* EdgeLog<Pose>::step_to(VertexId id) const {
   const auto found = steps_.find(id);
   return found == steps_.end() ? nullptr : &found->second;
+}
+
+template <class Pose>
+UncertainPose<Pose> EdgeLog<Pose>::Step::path(const typename Pose::Tangent& variances) const {
+  const typename Pose::Tangent deviations = variances.cwiseSqrt();
+  const UncertainPose<Pose> scaled{
+      measured.T, deviations.asDiagonal() * measured.covariance * deviations.asDiagonal()};
+  return forward ? scaled : inverse(scaled);
 }
 
 template <class Pose>

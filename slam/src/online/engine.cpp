@@ -278,7 +278,7 @@ PoseGraph<Pose> OnlineConsensus<Pose>::Engine::graph() const {
     if (pose) {
       graph.poses[v] = *pose;
     } else if (step != nullptr) {
-      graph.poses[v] = graph.poses[*graph.find(step->before)] * step->path.T;
+      graph.poses[v] = graph.poses[*graph.find(step->before)] * step->path(Pose::Tangent::Ones()).T;
     } else if (!given.empty()) {
       graph.poses[v] = given[v];
     }

@@ -10,6 +10,7 @@
 #include "isotherm/slam/graph/information.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
 #include "prune/consensus/objective/loop_gain.hpp"
+#include "prune/consensus/objective/own_frames.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -54,7 +55,7 @@ std::optional<typename Outlook<Pose>::Place> Outlook<Pose>::place(VertexId id) c
     }
     const auto* step = log_.step_to(id);
     if (step == nullptr) return std::nullopt;
-    since = compose({step->path.T, scaled<Pose>(step->path.covariance, variances)}, since);
+    since = compose(step->path(variances), since);
     id = step->before;
     ++found.steps;
   }
@@ -78,7 +79,7 @@ std::optional<UncertainPose<Pose>> Outlook<Pose>::tail(VertexId from, VertexId t
   while (to != from) {
     const auto* step = log_.step_to(to);
     if (map_.graph().find(to) || step == nullptr) return std::nullopt;
-    path = compose({step->path.T, scaled<Pose>(step->path.covariance, variances)}, path);
+    path = compose(step->path(variances), path);
     to = step->before;
   }
   return path;
@@ -105,7 +106,13 @@ UncertainPose<Pose> Outlook<Pose>::between(const Place& a, const Place& b) const
 
 template <class Pose>
 Standing Outlook<Pose>::standing(Index edge) const {
-  const auto& [from, to, measured, step] = log_.edges()[edge];
+  const auto& told = log_.edges()[edge];
+  auto measured = told.measured;
+  measured.from = 0;
+  measured.to = 1;
+  measured = in_own_frame(measured);
+  const VertexId from = measured.from == 0 ? told.from : told.to;
+  const VertexId to = measured.from == 0 ? told.to : told.from;
   const auto a = place(from);
   const auto b = place(to);
   auto path = tail(from, to);

@@ -19,8 +19,8 @@ struct OnlineOptions {
   /// Of the objective, the same as the batch's.
   ConsensusOptions consensus;
   /// Work on earlier verdicts while edges come, in times of the batch's on the same graph; in
-  /// [0, 100]. With 0 each loop is judged once, when it comes.
-  double effort = 2.0;
+  /// [0, 100]. With 0 they are looked at again only when there are four times as many loops.
+  double effort = 1.0;
 
   /// @throws InvalidArgument naming the field that is out of range.
   void validate() const;
