@@ -128,7 +128,8 @@ def page(rows):
              "Each graph is replayed in order of time by `isotherm follow`, one thread, clean and",
              "with false loops by `isotherm corrupt`. Latency is that of one call; *batches* is the CPU",
              "time of it all, the end included, in runs of `isotherm prune`; *differ* counts final verdicts",
-             "that are not the batch's; P and R are of what is kept, at the end and as the mean over",
+             "that are not the batch's. Other programs used the machine meanwhile, which latency, in wall",
+             "time, suffers from. P and R are of what is kept, at the end and as the mean over",
              "twenty times on the way; delay is in poses from a loop's coming to its final verdict,",
              "of loops that end right: median and nine of ten.", "",
              "| graph | false loops | loops | ms: median | 99 % | worst | batches | differ | P, R at the end"

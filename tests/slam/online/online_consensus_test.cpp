@@ -39,6 +39,16 @@ PoseGraph<Pose> corrupted_graph(std::uint64_t seed, int poses = 60, int loops = 
   options.seed = seed;
   auto graph = corrupt(made.graph, made.truth, options).graph;
   graph.poses.clear();
+  // Which of two edges between neighbours is the step must not depend on their order.
+  for (auto& edge : graph.constraints) edge.link = LinkKind::loop;
+  for (const Index k : edge_roles(made.graph).odometry) {
+    const auto& step = made.graph.constraints[k];
+    for (auto& edge : graph.constraints) {
+      const bool same = edge.from == step.from && edge.to == step.to &&
+                        edge.T_from_to.log() == step.T_from_to.log();
+      if (same) edge.link = LinkKind::odometry;
+    }
+  }
   std::ranges::stable_sort(graph.constraints, {},
                            [](const auto& edge) { return std::max(edge.from, edge.to); });
   return graph;
@@ -135,7 +145,7 @@ TYPED_TEST(OnlineConsensusOf, EndsTheSameInWhateverOrderEdgesCome) {
   const auto graph = corrupted_graph<Pose>(6);
   const auto expected = by_measurement(prune(graph).verdicts, graph);
   Random random(7);
-  for (int trial = 0; trial < 10; ++trial) {
+  for (int trial = 0; trial < 4; ++trial) {
     auto shuffled = graph;
     for (std::size_t k = shuffled.constraints.size(); k > 1; --k) {
       std::swap(shuffled.constraints[k - 1], shuffled.constraints[random.index(k)]);
