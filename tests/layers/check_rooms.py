@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Fails if the folders of a layer include each other in circles or against the order that
-docs/architecture.md states, if a folder holds too many sources, or if an include is written
-in another style.
+docs/architecture.md states, if a folder holds too many sources, if an include is written
+in another style, or if a library's internal header has no namespace `detail`.
 
 usage: check_rooms.py ROOT
 """
@@ -18,6 +18,8 @@ BESIDE = {"python": "apps"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 # A row of the document's table of rooms: | `folder` | `first`, `second`, `header.hpp`, ... |
 ROW = re.compile(r"^\| `([a-z_/]+)` \| ((?:`[a-z0-9_.]+`(?:, )?)+) \|$", re.MULTILINE)
+# Internal names, or what a public class keeps to itself.
+DETAIL = re.compile(r"^namespace (\w+::)*detail \{$|^(class|struct) \w+::\w+ \{$", re.MULTILINE)
 THIRD_PARTIES = re.compile(r"^(Eigen|Spectra|CGAL|boost|CLI|nlohmann|fmt|nanobind|oneapi|tbb|fast_float)/")
 
 
@@ -103,10 +105,17 @@ def check_sizes(root):
             yield f"{folder}: {files} sources, of {MOST_FILES} at most"
 
 
+def check_internals(root):
+    for layer in LAYERS[:LAYERS.index("apps")]:
+        for path in sorted((root / layer / "src").rglob("*.hpp")):
+            if not DETAIL.search(path.read_text()):
+                yield f"{path}: an internal header without namespace detail"
+
+
 def main():
     root = Path(sys.argv[1]).resolve()
     orders = stated_orders(root)
-    complaints = [*check_sizes(root)]
+    complaints = [*check_sizes(root), *check_internals(root)]
     for layer in LAYERS:
         complaints += check_includes(root, layer, orders)
     for complaint in complaints:

@@ -23,6 +23,9 @@ FAULTS = {
                        "#include <isotherm/slam/graph/pose.hpp>\n", "not in quotes"),
     "a relative path": ("slam/src/graph/planted.cpp",
                         '#include "../io/graph_draft.hpp"\n', "by a relative path"),
+    "an internal name without": ("slam/src/graph/planted.hpp",
+                                 "namespace isotherm::slam {\nint planted();\n}\n",
+                                 "without namespace detail"),
     "a bare name": ("slam/src/graph/planted.cpp", '#include "gauge.hpp"\n', "not by its full path"),
 }
 

@@ -3,7 +3,7 @@
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm/spectral/edges/edge_verdicts.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 
 /// One verdict "keep" per candidate, with its place in the file and its ids, for
 /// a method to fill in.
@@ -22,4 +22,4 @@ spectral::EdgeVerdicts candidate_verdicts(const PoseGraph<Pose>& graph, const Ed
   return verdicts;
 }
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

@@ -4,7 +4,7 @@
 
 #include "isotherm/spectral/types.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 
 /// The root of a member's tree in a forest of disjoint sets, where `parent` of a root
 /// is itself. Halves the path on the way, which keeps later searches short.
@@ -16,4 +16,4 @@ inline spectral::Index find_root(std::vector<spectral::Index>& parent, spectral:
   return member;
 }
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

@@ -4,7 +4,7 @@
 
 #include "graph/find_root.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 namespace {
 
 // Joins under the smaller root, so that a root is its component's first vertex.
@@ -60,4 +60,4 @@ Gauge fix_gauge(const PoseGraph<Pose>& graph) {
 template Gauge fix_gauge(const PoseGraph<Pose2>&);
 template Gauge fix_gauge(const PoseGraph<Pose3>&);
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

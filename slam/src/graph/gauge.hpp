@@ -4,7 +4,7 @@
 
 #include "isotherm/slam/graph/pose_graph.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 
 /// What constraints leave free: one rigid motion per connected component, so one
 /// pose of each is held.
@@ -22,4 +22,4 @@ struct Gauge {
 template <class Pose>
 Gauge fix_gauge(const PoseGraph<Pose>& graph);
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

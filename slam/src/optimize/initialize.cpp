@@ -48,7 +48,7 @@ std::vector<Pose> follow_tree(const PoseGraph<Pose>& graph, const std::vector<bo
   std::vector<bool> reached(graph.ids.size(), false);
   std::queue<Index> queue;
   std::queue<Index> postponed;
-  for (const Index held : fix_gauge(graph).held) {
+  for (const Index held : detail::fix_gauge(graph).held) {
     reached[held] = true;
     queue.push(held);
   }
@@ -97,7 +97,7 @@ Pose3 make_pose(const Eigen::Vector3d& translation, const Eigen::Matrix3d& rotat
 // right-hand sides: sum of weight * |x_to - A x_from - b|^2 over constraints.
 class VertexSystem {
  public:
-  VertexSystem(int block_size, int columns, const Gauge& gauge,
+  VertexSystem(int block_size, int columns, const detail::Gauge& gauge,
                std::span<const std::pair<Index, Index>> ends)
       : gauge_(gauge),
         ends_(ends.begin(), ends.end()),
@@ -138,7 +138,7 @@ class VertexSystem {
 
  private:
   static std::vector<std::pair<Index, Index>> variables(
-      const Gauge& gauge, std::span<const std::pair<Index, Index>> ends) {
+      const detail::Gauge& gauge, std::span<const std::pair<Index, Index>> ends) {
     std::vector<std::pair<Index, Index>> pairs;
     for (const auto& [from, to] : ends) {
       if (gauge.variable[from] < 0 || gauge.variable[to] < 0) continue;
@@ -152,7 +152,7 @@ class VertexSystem {
     return rhs_.block(variable * size, 0, size, rhs_.cols());
   }
 
-  const Gauge& gauge_;
+  const detail::Gauge& gauge_;
   std::vector<std::pair<Index, Index>> ends_;
   spectral::BlockCholesky matrix_;
   Eigen::MatrixXd rhs_;
@@ -170,7 +170,7 @@ double mean_information(const Constraint<Pose>& constraint, int first, int count
 template <class Pose>
 std::vector<Pose> chordal_poses(const PoseGraph<Pose>& graph, std::vector<Pose> poses) {
   constexpr int kDim = Pose::kDim;
-  const Gauge gauge = fix_gauge(graph);
+  const detail::Gauge gauge = detail::fix_gauge(graph);
   std::vector<Index> used;
   std::vector<std::pair<Index, Index>> ends;
   for (Index k = 0; k < graph.constraint_count(); ++k) {
@@ -235,7 +235,8 @@ std::vector<Pose> initial_poses(const PoseGraph<Pose>& graph, const EdgeRoles& r
     case Initialization::chordal:
       return chordal_poses(graph, follow_tree(graph, preferred));
     case Initialization::switchable:
-      return switchable_poses(graph, roles, default_kernel_width(RobustKernel::sc, Pose::kDof));
+      return detail::switchable_poses(graph, roles,
+                                      default_kernel_width(RobustKernel::sc, Pose::kDof));
     case Initialization::automatic:
     case Initialization::odometry:
     case Initialization::spanning_tree:
@@ -245,17 +246,18 @@ std::vector<Pose> initial_poses(const PoseGraph<Pose>& graph, const EdgeRoles& r
 }
 
 template <class Pose>
-std::vector<Pose> switchable_poses(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                                   double width, const ProgressCallback& progress) {
+std::vector<Pose> detail::switchable_poses(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                                           double width, const ProgressCallback& progress) {
   std::vector<bool> robust(graph.constraints.size(), false);
   for (const Index k : roles.candidates) robust[k] = true;
   const auto odometry = initial_poses(graph, roles, Initialization::odometry);
   auto poses = odometry;
-  NormalEquations<Pose> equations(graph);
+  detail::NormalEquations<Pose> equations(graph);
   Eigen::VectorXd weights;
-  MinimizeOptions options;
+  detail::MinimizeOptions options;
   options.progress = progress;
-  const auto summary = minimize_switchable(equations, robust, width, options, poses, weights);
+  const auto summary =
+      detail::minimize_switchable(equations, robust, width, options, poses, weights);
   return summary.status == OptimizeStatus::diverged ? odometry : poses;
 }
 
@@ -263,9 +265,9 @@ template std::vector<Pose2> initial_poses(const PoseGraph<Pose2>&, const EdgeRol
                                           Initialization);
 template std::vector<Pose3> initial_poses(const PoseGraph<Pose3>&, const EdgeRoles&,
                                           Initialization);
-template std::vector<Pose2> switchable_poses(const PoseGraph<Pose2>&, const EdgeRoles&, double,
-                                             const ProgressCallback&);
-template std::vector<Pose3> switchable_poses(const PoseGraph<Pose3>&, const EdgeRoles&, double,
-                                             const ProgressCallback&);
+template std::vector<Pose2> detail::switchable_poses(const PoseGraph<Pose2>&, const EdgeRoles&,
+                                                     double, const ProgressCallback&);
+template std::vector<Pose3> detail::switchable_poses(const PoseGraph<Pose3>&, const EdgeRoles&,
+                                                     double, const ProgressCallback&);
 
 }  // namespace isotherm::slam

@@ -8,7 +8,7 @@
 #include "isotherm/base/error.hpp"
 #include "isotherm/spectral/sparse/damped_step.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 namespace {
 
 // Damping is relative to the Hessian's diagonal. Long chains have directions
@@ -184,4 +184,4 @@ template MinimizeSummary minimize(NormalEquations<Pose2>&, const EdgeCost&, cons
 template MinimizeSummary minimize(NormalEquations<Pose3>&, const EdgeCost&, const MinimizeOptions&,
                                   std::vector<Pose3>&);
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

@@ -6,7 +6,7 @@
 #include "isotherm/slam/optimize/optimize.hpp"
 #include "optimize/normal_equations.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 
 /// Cost of constraint k with the given chi-squared, and its derivative.
 using EdgeCost = std::function<KernelValue(Index constraint, double chi2)>;
@@ -53,4 +53,4 @@ struct PreparedGraph {
 template <class Pose>
 PreparedGraph<Pose> prepare(const PoseGraph<Pose>& graph);
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

@@ -3,7 +3,7 @@
 
 #include "optimize/robust_minimize.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 namespace {
 
 constexpr double kMuStep = 1.4;
@@ -103,4 +103,4 @@ template MinimizeSummary minimize_graduated(NormalEquations<Pose3>&, const std::
                                             double, bool, const MinimizeOptions&,
                                             std::vector<Pose3>&, Eigen::VectorXd&);
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

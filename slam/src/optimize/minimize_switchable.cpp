@@ -4,7 +4,7 @@
 #include "isotherm/base/error.hpp"
 #include "optimize/robust_minimize.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 namespace {
 
 double joint_cost(const Eigen::VectorXd& chi2, const Eigen::VectorXd& switches, double width) {
@@ -69,4 +69,4 @@ template MinimizeSummary minimize_switchable(NormalEquations<Pose3>&, const std:
                                              double, const MinimizeOptions&, std::vector<Pose3>&,
                                              Eigen::VectorXd&);
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 
 template <class Pose>
 NormalEquations<Pose>::NormalEquations(const PoseGraph<Pose>& graph, spectral::FactorForm form)
@@ -171,4 +171,4 @@ void NormalEquations<Pose>::retract(const Eigen::VectorXd& step, std::vector<Pos
 template class NormalEquations<Pose2>;
 template class NormalEquations<Pose3>;
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

@@ -10,7 +10,7 @@
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm/spectral/sparse/block_cholesky.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 
 /// How one constraint enters the normal equations at a linearisation point: with
 /// J its Jacobian, r its residual and u = J' Omega r,
@@ -102,4 +102,4 @@ class NormalEquations {
 extern template class NormalEquations<Pose2>;
 extern template class NormalEquations<Pose3>;
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

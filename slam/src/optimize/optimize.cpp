@@ -46,11 +46,12 @@ OptimizeOptions resolve(OptimizeOptions options, int dof) {
 // the spanning tree where that costs less, as it may where loops are false.
 template <class Pose>
 std::vector<Pose> starting_poses(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                                 Initialization method, const NormalEquations<Pose>& equations,
+                                 Initialization method,
+                                 const detail::NormalEquations<Pose>& equations,
                                  const ProgressCallback& progress) {
   if (method == Initialization::switchable) {  // as long a work as what follows
     const double width = default_kernel_width(RobustKernel::sc, Pose::kDof);
-    return switchable_poses(graph, roles, width, progress);
+    return detail::switchable_poses(graph, roles, width, progress);
   }
   if (method != Initialization::automatic) return initial_poses(graph, roles, method);
   auto tree = initial_poses(graph, roles, Initialization::spanning_tree);
@@ -65,29 +66,29 @@ std::vector<Pose> starting_poses(const PoseGraph<Pose>& graph, const EdgeRoles& 
 
 // Runs the method of the kernel; leaves the weights it ended with.
 template <class Pose>
-MinimizeSummary minimize_by_kernel(NormalEquations<Pose>& equations,
-                                   const std::vector<bool>& robust, const OptimizeOptions& options,
-                                   const RunContext& run, std::vector<Pose>& poses,
-                                   Eigen::VectorXd& weights) {
-  const MinimizeOptions minimize_options{options.algorithm, options.max_iterations,
-                                         options.cost_tolerance, run.progress};
+detail::MinimizeSummary minimize_by_kernel(detail::NormalEquations<Pose>& equations,
+                                           const std::vector<bool>& robust,
+                                           const OptimizeOptions& options, const RunContext& run,
+                                           std::vector<Pose>& poses, Eigen::VectorXd& weights) {
+  const detail::MinimizeOptions minimize_options{options.algorithm, options.max_iterations,
+                                                 options.cost_tolerance, run.progress};
   switch (options.kernel) {
     case RobustKernel::sc:
-      return minimize_switchable(equations, robust, options.kernel_width, minimize_options, poses,
-                                 weights);
+      return detail::minimize_switchable(equations, robust, options.kernel_width, minimize_options,
+                                         poses, weights);
     case RobustKernel::gnc:
     case RobustKernel::gnc_gm:
-      return minimize_graduated(equations, robust, options.kernel_width,
-                                options.kernel == RobustKernel::gnc, minimize_options, poses,
-                                weights);
+      return detail::minimize_graduated(equations, robust, options.kernel_width,
+                                        options.kernel == RobustKernel::gnc, minimize_options,
+                                        poses, weights);
     default:
       break;
   }
-  const EdgeCost edge_cost = [&](Index k, double chi2) {
+  const detail::EdgeCost edge_cost = [&](Index k, double chi2) {
     const auto kernel = robust[k] ? options.kernel : RobustKernel::none;
     return evaluate_kernel(kernel, options.kernel_width, chi2);
   };
-  const auto summary = minimize(equations, edge_cost, minimize_options, poses);
+  const auto summary = detail::minimize(equations, edge_cost, minimize_options, poses);
   const Eigen::VectorXd chi2 = equations.chi2(poses);
   weights.resize(chi2.size());
   for (Index k = 0; k < chi2.size(); ++k) weights[k] = edge_cost(k, chi2[k]).weight;
@@ -122,12 +123,12 @@ OptimizeResult<Pose> optimize(const PoseGraph<Pose>& graph, const EdgeRoles& rol
   given.validate();
   const auto start = std::chrono::steady_clock::now();
   const OptimizeOptions options = resolve(given, Pose::kDof);
-  const PreparedGraph<Pose> prepared = prepare(graph);
+  const detail::PreparedGraph<Pose> prepared = detail::prepare(graph);
   std::vector<bool> robust(graph.constraints.size(), options.kernel_on_odometry);
   for (const Index k : roles.candidates) robust[k] = true;
 
   OptimizeResult<Pose> result;
-  NormalEquations<Pose> equations(prepared.graph);
+  detail::NormalEquations<Pose> equations(prepared.graph);
   result.poses =
       starting_poses(prepared.graph, roles, options.initialization, equations, run.progress);
   const auto summary =

@@ -7,7 +7,7 @@
 #include "isotherm/slam/graph/repeats.hpp"
 #include "optimize/minimize.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 namespace {
 
 [[noreturn]] void fail(std::size_t constraint, std::uint64_t line, const std::string& problem) {
@@ -64,4 +64,4 @@ PreparedGraph<Pose> prepare(const PoseGraph<Pose>& graph) {
 template PreparedGraph<Pose2> prepare(const PoseGraph<Pose2>&);
 template PreparedGraph<Pose3> prepare(const PoseGraph<Pose3>&);
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

@@ -4,7 +4,7 @@
 
 #include "optimize/minimize.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 
 /// Switchable constraints (Suenderhauf and Protzel 2012): every constraint in
 /// `robust` has a switch s in [0, 1], and poses and switches together minimise
@@ -39,4 +39,4 @@ template <class Pose>
 std::vector<Pose> switchable_poses(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                                    double width, const ProgressCallback& progress = {});
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

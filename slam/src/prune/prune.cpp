@@ -47,7 +47,7 @@ PruneResult prune(const PoseGraph<Pose>& graph, const EdgeRoles& roles, const Pr
                   const RunContext& run) {
   const auto start = std::chrono::steady_clock::now();
   EdgeRoles judged = roles;
-  const SetAside set_aside(graph, judged);
+  const detail::SetAside set_aside(graph, judged);
   const auto judge = [&](const PoseGraph<Pose>& usable) {
     return std::visit([&](const auto& own) { return detail::prune_by(usable, judged, own, run); },
                       options);

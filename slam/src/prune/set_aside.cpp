@@ -8,7 +8,7 @@
 #include "isotherm/base/words.hpp"
 #include "isotherm/slam/graph/repeats.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 namespace {
 
 using spectral::EdgeVerdict;
@@ -144,4 +144,4 @@ void SetAside::return_to(PruneResult& result) const {
 template SetAside::SetAside(const PoseGraph<Pose2>&, EdgeRoles&);
 template SetAside::SetAside(const PoseGraph<Pose3>&, EdgeRoles&);
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

@@ -5,7 +5,7 @@
 
 #include "isotherm/slam/prune/prune.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 
 /// What no method is asked about: edges from a vertex to itself, which say nothing about
 /// where two poses lie, and those that say again what another one says, which would count
@@ -38,4 +38,4 @@ class SetAside {
   std::uint64_t repeats_ = 0;  // of odometry, too
 };
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

@@ -7,7 +7,7 @@
 
 #include "isotherm/base/random.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 namespace {
 
 BitGraph random_graph(Random& random, Index n, double density) {
@@ -76,4 +76,4 @@ TEST(MaxClique, EmptyAndEdgeless) {
 }
 
 }  // namespace
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

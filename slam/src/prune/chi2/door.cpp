@@ -21,7 +21,7 @@ PruneResult prune_by(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
   const auto checks = odometry_chi2(graph, roles);
   PruneResult result;
   result.method = Chi2PruneOptions::method();
-  result.verdicts = candidate_verdicts(graph, roles);
+  result.verdicts = detail::candidate_verdicts(graph, roles);
   std::size_t unconnected = 0;
   for (std::size_t c = 0; c < checks.size(); ++c) {
     auto& verdict = result.verdicts[c];

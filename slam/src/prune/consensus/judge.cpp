@@ -40,7 +40,7 @@ template <class Pose>
 ConsensusResult detail::judge_by_evidence(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                                           const ConsensusOptions& options, const RunContext& run) {
   ConsensusResult result;
-  result.verdicts = candidate_verdicts(graph, roles);
+  result.verdicts = detail::candidate_verdicts(graph, roles);
   if (roles.candidates.empty()) return result;
   const detail::Objective<Pose> objective(graph, roles, options.window, options.calibrate);
   detail::Climb<Pose> climb(objective, options, run.progress);

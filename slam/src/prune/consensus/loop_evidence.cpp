@@ -53,7 +53,7 @@ double loop_evidence(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
   options.validate();
   require_candidates(edges, roles);
   EdgeRoles judged = roles;
-  const SetAside set_aside(graph, judged);
+  const detail::SetAside set_aside(graph, judged);
   if (judged.candidates.empty()) return 0.0;
   const std::vector<bool> accepted = flags_of(edges, judged);
   const auto unusable = unusable_information(graph, judged);

@@ -21,7 +21,7 @@ PruneResult prune_by(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
   const auto evidence = curve_evidence(graph, roles, options.curve, run);
   PruneResult result;
   result.method = CurvePruneOptions::method();
-  result.verdicts = candidate_verdicts(graph, roles);
+  result.verdicts = detail::candidate_verdicts(graph, roles);
   std::size_t silent = 0;
   for (std::size_t c = 0; c < evidence.size(); ++c) {
     auto& verdict = result.verdicts[c];

@@ -69,7 +69,7 @@ HeatPruneResult heat_verdicts(const PoseGraph<Pose>& graph, const EdgeRoles& rol
                               const HeatQuestion& question, spectral::MultiscaleHeat answer) {
   const auto& induced = question.induced;
   HeatPruneResult result;
-  result.verdicts = candidate_verdicts(graph, roles);
+  result.verdicts = detail::candidate_verdicts(graph, roles);
   for (std::size_t c = 0; c < roles.candidates.size(); ++c) {
     const Index edge = induced.constraint_edge[roles.candidates[c]];
     result.weights.push_back(edge < 0 ? 0.0 : induced.graph.edge(edge).weight);

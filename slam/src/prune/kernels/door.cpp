@@ -51,7 +51,7 @@ PruneResult prune_by(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
   const double threshold = kernel_threshold(kernel, width);
   PruneResult result;
   result.method = options.method();
-  result.verdicts = candidate_verdicts(graph, roles);
+  result.verdicts = detail::candidate_verdicts(graph, roles);
   for (auto& verdict : result.verdicts) {
     verdict.score = optimized.chi2[verdict.edge];
     verdict.threshold = threshold;

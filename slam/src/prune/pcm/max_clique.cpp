@@ -4,7 +4,7 @@
 #include <bit>
 #include <numeric>
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 namespace {
 
 class CliqueSearch {
@@ -112,4 +112,4 @@ Clique max_clique(const BitGraph& graph, std::int64_t budget) {
   return CliqueSearch(graph, budget).run();
 }
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

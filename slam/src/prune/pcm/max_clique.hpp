@@ -5,7 +5,7 @@
 
 #include "isotherm/spectral/types.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 
 using spectral::Index;
 
@@ -50,4 +50,4 @@ struct Clique {
 /// result the same on every machine.
 Clique max_clique(const BitGraph& graph, std::int64_t budget);
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

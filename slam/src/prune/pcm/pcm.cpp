@@ -118,9 +118,9 @@ template <class Pose>
 PcmResult pcm(const PoseGraph<Pose>& given, const EdgeRoles& roles, const PcmOptions& options,
               const RunContext& run) {
   options.validate();
-  const PoseGraph<Pose> graph = prepare(given).graph;
+  const PoseGraph<Pose> graph = detail::prepare(given).graph;
   PcmResult result;
-  result.verdicts = candidate_verdicts(graph, roles);
+  result.verdicts = detail::candidate_verdicts(graph, roles);
 
   const bool check_odometry = options.pcm_odometry_confidence < 1.0;
   const double odometry_limit =
@@ -144,7 +144,7 @@ PcmResult pcm(const PoseGraph<Pose>& given, const EdgeRoles& roles, const PcmOpt
   const OdometryPaths<Pose> odometry(graph, roles);
   const PairCheck<Pose> check(odometry,
                               chi_squared_quantile(options.pcm_pair_confidence, Pose::kDof));
-  BitGraph agreement(count);
+  detail::BitGraph agreement(count);
   for (Index a = 0; a < count; ++a) {
     if (run.progress &&
         !run.progress({"pcm", static_cast<std::uint64_t>(a), static_cast<std::uint64_t>(count)})) {
@@ -155,7 +155,7 @@ PcmResult pcm(const PoseGraph<Pose>& given, const EdgeRoles& roles, const PcmOpt
     }
   }
 
-  const Clique clique = max_clique(agreement, options.pcm_clique_budget);
+  const detail::Clique clique = detail::max_clique(agreement, options.pcm_clique_budget);
   result.proven = clique.proven;
   for (Index a = 0; a < count; ++a) {
     const auto disagreements =

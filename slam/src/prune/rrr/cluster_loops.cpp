@@ -35,15 +35,15 @@ std::vector<std::vector<Index>> cluster_loops(const PoseGraph<Pose>& graph, cons
       const Ends& second = ends[by_low[b]];
       if (second.low - first.low > gap) break;
       if (std::abs(second.high - first.high) > gap) continue;
-      const Index x = find_root(parent, by_low[a]);
-      const Index y = find_root(parent, by_low[b]);
+      const Index x = detail::find_root(parent, by_low[a]);
+      const Index y = detail::find_root(parent, by_low[b]);
       parent[std::max(x, y)] = std::min(x, y);
     }
   }
   std::vector<std::vector<Index>> clusters;
   std::vector<Index> cluster_of(static_cast<std::size_t>(count), -1);
   for (Index c = 0; c < count; ++c) {
-    Index& cluster = cluster_of[find_root(parent, c)];
+    Index& cluster = cluster_of[detail::find_root(parent, c)];
     if (cluster < 0) {
       cluster = static_cast<Index>(clusters.size());
       clusters.emplace_back();

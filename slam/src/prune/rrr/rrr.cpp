@@ -41,7 +41,7 @@ class Rrr {
         run_(run),
         odometry_(graph, roles),
         loop_limit_(chi_squared_quantile(options.rrr_confidence, Pose::kDof)),
-        verdicts_(candidate_verdicts(graph, roles)),
+        verdicts_(detail::candidate_verdicts(graph, roles)),
         accepted_(roles.candidates.size(), false),
         start_(start()),
         poses_(start_) {
@@ -67,7 +67,7 @@ class Rrr {
   std::vector<Pose> start() const {
     const Initialization method = start_of(options_);
     return method == Initialization::switchable
-               ? switchable_poses(graph_, roles_, loop_limit_, run_.progress)
+               ? detail::switchable_poses(graph_, roles_, loop_limit_, run_.progress)
                : initial_poses(graph_, roles_, method);
   }
 
@@ -98,11 +98,13 @@ class Rrr {
 
   // chi-squared of every constraint of `small` after optimisation.
   Eigen::VectorXd optimised_chi2(const PoseGraph<Pose>& small, std::vector<Pose>& poses) const {
-    NormalEquations<Pose> equations(small);
-    const EdgeCost least_squares = [](Index, double chi2) { return KernelValue{chi2, 1.0}; };
-    minimize(equations, least_squares,
-             {OptimizeAlgorithm::gauss_newton, options_.rrr_iterations, 1e-4, run_.progress},
-             poses);
+    detail::NormalEquations<Pose> equations(small);
+    const detail::EdgeCost least_squares = [](Index, double chi2) {
+      return KernelValue{chi2, 1.0};
+    };
+    detail::minimize(
+        equations, least_squares,
+        {OptimizeAlgorithm::gauss_newton, options_.rrr_iterations, 1e-4, run_.progress}, poses);
     return equations.chi2(poses);
   }
 
@@ -353,7 +355,7 @@ template <class Pose>
 EdgeVerdicts rrr(const PoseGraph<Pose>& graph, const EdgeRoles& roles, const RrrOptions& options,
                  const RunContext& run) {
   options.validate();
-  const auto prepared = prepare(graph);
+  const auto prepared = detail::prepare(graph);
   return Rrr<Pose>(prepared.graph, roles, options, run).run();
 }
 
