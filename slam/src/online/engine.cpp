@@ -10,7 +10,7 @@
 #include "prune/consensus/climb/report.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
@@ -35,14 +35,12 @@ double most_work(std::size_t edges) {
 }  // namespace
 
 template <class Pose>
-OnlineConsensus<Pose>::Engine::Engine(const OnlineOptions& options, RunContext run)
+OnlineEngine<Pose>::OnlineEngine(const OnlineOptions& options, RunContext run)
     : options_(options), run_(std::move(run)) {}
 
 template <class Pose>
-std::vector<LoopChange> OnlineConsensus<Pose>::Engine::add(VertexId from, VertexId to,
-                                                           const Pose& T_from_to,
-                                                           const Matrix& information,
-                                                           LinkKind link) {
+std::vector<LoopChange> OnlineEngine<Pose>::add(VertexId from, VertexId to, const Pose& T_from_to,
+                                                const Matrix& information, LinkKind link) {
   add_silently(from, to, T_from_to, information, link);
   const auto edge = static_cast<Index>(rows_.size()) - 1;
   if (!log_.edges().back().step) judge(edge);
@@ -51,8 +49,8 @@ std::vector<LoopChange> OnlineConsensus<Pose>::Engine::add(VertexId from, Vertex
 }
 
 template <class Pose>
-void OnlineConsensus<Pose>::Engine::add_silently(VertexId from, VertexId to, const Pose& T_from_to,
-                                                 const Matrix& information, LinkKind link) {
+void OnlineEngine<Pose>::add_silently(VertexId from, VertexId to, const Pose& T_from_to,
+                                      const Matrix& information, LinkKind link) {
   const bool step = log_.add(from, to, T_from_to, information, link).step;
   rows_.emplace_back();
   if (!step) ++loops_;
@@ -60,14 +58,14 @@ void OnlineConsensus<Pose>::Engine::add_silently(VertexId from, VertexId to, con
 }
 
 template <class Pose>
-void OnlineConsensus<Pose>::Engine::ask_to_go_on() const {
+void OnlineEngine<Pose>::ask_to_go_on() const {
   if (!run_.progress) return;
   const auto edges = static_cast<std::uint64_t>(rows_.size());
   if (!run_.progress({"online", edges, 0})) throw Cancelled();
 }
 
 template <class Pose>
-void OnlineConsensus<Pose>::Engine::go_on() {
+void OnlineEngine<Pose>::go_on() {
   ask_to_go_on();
   if (loops_ == 0) return;
   const auto work = most_work(rows_.size());
@@ -78,7 +76,7 @@ void OnlineConsensus<Pose>::Engine::go_on() {
 
 // The first loop's, to hold others against; then from every start, where loops have grown enough.
 template <class Pose>
-void OnlineConsensus<Pose>::Engine::search_everywhere(double budget) {
+void OnlineEngine<Pose>::search_everywhere(double budget) {
   if (!everywhere_) {
     const bool due = loops_ >= kFirst && loops_ >= kGrowth * searched_;
     if (!due && map_) return;
@@ -101,7 +99,7 @@ void OnlineConsensus<Pose>::Engine::search_everywhere(double budget) {
 
 // From where the last one stood, as soon as there is a loop that it has not seen.
 template <class Pose>
-void OnlineConsensus<Pose>::Engine::follow_up(double budget) {
+void OnlineEngine<Pose>::follow_up(double budget) {
   if (!map_ || budget <= 0.0) return;
   if (!next_) {
     const auto seen = static_cast<Index>(map_->graph().constraints.size());
@@ -122,15 +120,14 @@ void OnlineConsensus<Pose>::Engine::follow_up(double budget) {
 }
 
 template <class Pose>
-typename OnlineConsensus<Pose>::Engine::Search OnlineConsensus<Pose>::Engine::begin(
-    bool everywhere) const {
-  Search search{std::make_shared<Snapshot>(log_.graph(), options_.consensus)};
+typename OnlineEngine<Pose>::Search OnlineEngine<Pose>::begin(bool everywhere) const {
+  Search search{std::make_shared<Snapshot<Pose>>(log_.graph(), options_.consensus)};
   for (const auto& other : {map_, rival_}) {
     if (other) search.from.push_back(other);
   }
   search.task = std::make_unique<detail::PacedTask>(
       [map = search.map.get(), from = search.from, everywhere](const detail::Pace& pace) {
-        std::vector<const Snapshot*> others;
+        std::vector<const Snapshot<Pose>*> others;
         for (const auto& other : from) others.push_back(other.get());
         map->explain(others, everywhere, pace);
       });
@@ -139,17 +136,17 @@ typename OnlineConsensus<Pose>::Engine::Search OnlineConsensus<Pose>::Engine::be
 
 // Where the equations break down nothing is explained, and what was stays.
 template <class Pose>
-bool OnlineConsensus<Pose>::Engine::run(Search& search, double budget) {
+bool OnlineEngine<Pose>::run(Search& search, double budget) {
   try {
     return search.task->run(budget);
   } catch (const NumericalError&) {
-    search.map = std::make_shared<Snapshot>(search.map->graph(), options_.consensus);
+    search.map = std::make_shared<Snapshot<Pose>>(search.map->graph(), options_.consensus);
     return true;
   }
 }
 
 template <class Pose>
-void OnlineConsensus<Pose>::Engine::adopt(std::shared_ptr<Snapshot> map) {
+void OnlineEngine<Pose>::adopt(std::shared_ptr<Snapshot<Pose>> map) {
   const auto seen = static_cast<Index>(map->graph().constraints.size());
   take_over(map->verdicts());
   outlook_.reset();
@@ -161,7 +158,7 @@ void OnlineConsensus<Pose>::Engine::adopt(std::shared_ptr<Snapshot> map) {
 }
 
 template <class Pose>
-void OnlineConsensus<Pose>::Engine::take_over(const PruneResult& result) {
+void OnlineEngine<Pose>::take_over(const PruneResult& result) {
   const auto& details = result.consensus.details;
   for (std::size_t k = 0; k < result.verdicts.size(); ++k) {
     const double chi2 = details.empty() ? 0.0 : details[k].chi2;
@@ -171,7 +168,7 @@ void OnlineConsensus<Pose>::Engine::take_over(const PruneResult& result) {
 
 // A loop that came after the snapshot, by that.
 template <class Pose>
-void OnlineConsensus<Pose>::Engine::judge(Index number) {
+void OnlineEngine<Pose>::judge(Index number) {
   const auto& edge = log_.edges()[number];
   spectral::EdgeVerdict row{.edge = number, .from = edge.from, .to = edge.to};
   row.verdict = spectral::Verdict::ambiguous;
@@ -203,7 +200,7 @@ void OnlineConsensus<Pose>::Engine::judge(Index number) {
 }
 
 template <class Pose>
-void OnlineConsensus<Pose>::Engine::set(spectral::EdgeVerdict verdict, std::string reason) {
+void OnlineEngine<Pose>::set(spectral::EdgeVerdict verdict, std::string reason) {
   const auto edge = static_cast<Index>(verdict.edge);
   Row& row = rows_[edge];
   row.now = LoopChange{std::move(verdict), std::move(reason), false};
@@ -211,7 +208,7 @@ void OnlineConsensus<Pose>::Engine::set(spectral::EdgeVerdict verdict, std::stri
 }
 
 template <class Pose>
-std::vector<LoopChange> OnlineConsensus<Pose>::Engine::changes() {
+std::vector<LoopChange> OnlineEngine<Pose>::changes() {
   std::ranges::sort(fresh_);
   std::vector<LoopChange> changes;
   for (const Index edge : fresh_) {
@@ -226,7 +223,7 @@ std::vector<LoopChange> OnlineConsensus<Pose>::Engine::changes() {
 }
 
 template <class Pose>
-std::vector<LoopChange> OnlineConsensus<Pose>::Engine::catch_up() {
+std::vector<LoopChange> OnlineEngine<Pose>::catch_up() {
   if (loops_ > 0) {
     next_.reset();
     everywhere_ = begin(loops_ >= kFirst);
@@ -238,13 +235,13 @@ std::vector<LoopChange> OnlineConsensus<Pose>::Engine::catch_up() {
 }
 
 template <class Pose>
-PruneResult OnlineConsensus<Pose>::Engine::result() const {
+PruneResult OnlineEngine<Pose>::result() const {
   const PruneOptions options = options_.consensus;
   return prune(log_.graph(), options, run_);
 }
 
 template <class Pose>
-std::vector<LoopChange> OnlineConsensus<Pose>::Engine::finish() {
+std::vector<LoopChange> OnlineEngine<Pose>::finish() {
   const auto final = result();
   next_.reset();
   everywhere_.reset();
@@ -255,7 +252,7 @@ std::vector<LoopChange> OnlineConsensus<Pose>::Engine::finish() {
 }
 
 template <class Pose>
-spectral::EdgeVerdicts OnlineConsensus<Pose>::Engine::verdicts() const {
+spectral::EdgeVerdicts OnlineEngine<Pose>::verdicts() const {
   spectral::EdgeVerdicts all;
   for (const auto& row : rows_) {
     if (row.now) all.push_back(row.now->verdict);
@@ -265,7 +262,7 @@ spectral::EdgeVerdicts OnlineConsensus<Pose>::Engine::verdicts() const {
 
 // Vertices that the map has not follow odometry.
 template <class Pose>
-PoseGraph<Pose> OnlineConsensus<Pose>::Engine::graph() const {
+PoseGraph<Pose> OnlineEngine<Pose>::graph() const {
   auto graph = log_.graph();
   if (!map_ && graph.poses.empty()) graph.poses = odometry_poses(graph, edge_roles(graph));
   if (!map_) return graph;
@@ -286,7 +283,7 @@ PoseGraph<Pose> OnlineConsensus<Pose>::Engine::graph() const {
   return graph;
 }
 
-template class OnlineConsensus<Pose2>::Engine;
-template class OnlineConsensus<Pose3>::Engine;
+template class OnlineEngine<Pose2>;
+template class OnlineEngine<Pose3>;
 
-}  // namespace isotherm::slam
+}  // namespace isotherm::slam::detail

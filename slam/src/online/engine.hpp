@@ -12,15 +12,17 @@
 #include "online/saved_edges.hpp"
 #include "online/snapshot.hpp"
 
-namespace isotherm::slam {
+namespace isotherm::slam::detail {
 
 /// Judges each loop when it comes, by the latest snapshot that is explained, and meanwhile explains
 /// the next ones: where the last one stood, as often as effort allows, and from every start
 /// each time loops have doubled.
 template <class Pose>
-class OnlineConsensus<Pose>::Engine {
+class OnlineEngine {
  public:
-  Engine(const OnlineOptions& options, RunContext run);
+  using Matrix = typename Pose::Matrix;
+
+  OnlineEngine(const OnlineOptions& options, RunContext run);
 
   std::vector<LoopChange> add(VertexId from, VertexId to, const Pose& T_from_to,
                               const Matrix& information, LinkKind link);
@@ -41,12 +43,10 @@ class OnlineConsensus<Pose>::Engine {
   PoseGraph<Pose> graph() const;
 
  private:
-  using Snapshot = detail::Snapshot<Pose>;
-
   /// A snapshot that is being explained.
   struct Search {
-    std::shared_ptr<Snapshot> map;
-    std::vector<std::shared_ptr<const Snapshot>> from;
+    std::shared_ptr<Snapshot<Pose>> map;
+    std::vector<std::shared_ptr<const Snapshot<Pose>>> from;
     std::unique_ptr<detail::PacedTask> task;
   };
 
@@ -62,7 +62,7 @@ class OnlineConsensus<Pose>::Engine {
   void follow_up(double budget);
   Search begin(bool everywhere) const;
   bool run(Search& search, double budget);
-  void adopt(std::shared_ptr<Snapshot> map);
+  void adopt(std::shared_ptr<Snapshot<Pose>> map);
   void take_over(const PruneResult& result);
   void judge(Index edge);
   void set(spectral::EdgeVerdict verdict, std::string reason);
@@ -75,8 +75,8 @@ class OnlineConsensus<Pose>::Engine {
   std::vector<Row> rows_;     // one an edge
   std::vector<Index> fresh_;  // edges whose verdict may have changed since changes()
   Index loops_ = 0;           // that have come
-  std::shared_ptr<const Snapshot> map_;
-  std::shared_ptr<const Snapshot> rival_;  // of a search that led higher
+  std::shared_ptr<const Snapshot<Pose>> map_;
+  std::shared_ptr<const Snapshot<Pose>> rival_;  // of a search that led higher
   std::optional<detail::Outlook<Pose>> outlook_;
   std::optional<Search> everywhere_;
   std::optional<Search> next_;
@@ -85,4 +85,7 @@ class OnlineConsensus<Pose>::Engine {
   double credit_ = 0.0;       // work that following up may do
 };
 
-}  // namespace isotherm::slam
+extern template class OnlineEngine<Pose2>;
+extern template class OnlineEngine<Pose3>;
+
+}  // namespace isotherm::slam::detail

@@ -16,7 +16,7 @@ void OnlineOptions::validate() const {
 template <class Pose>
 OnlineConsensus<Pose>::OnlineConsensus(const OnlineOptions& options, RunContext run) {
   options.validate();
-  engine_ = std::make_unique<Engine>(options, std::move(run));
+  engine_ = std::make_unique<detail::OnlineEngine<Pose>>(options, std::move(run));
 }
 
 template <class Pose>

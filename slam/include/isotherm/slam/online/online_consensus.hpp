@@ -14,6 +14,11 @@
 
 namespace isotherm::slam {
 
+namespace detail {
+template <class Pose>
+class OnlineEngine;
+}  // namespace detail
+
 /// How verdicts are kept up to date while edges come.
 struct OnlineOptions {
   /// Of the objective, the same as the batch's.
@@ -114,8 +119,7 @@ class OnlineConsensus {
                               RunContext run = {});
 
  private:
-  class Engine;
-  std::unique_ptr<Engine> engine_;
+  std::unique_ptr<detail::OnlineEngine<Pose>> engine_;
 };
 
 extern template class OnlineConsensus<Pose2>;
