@@ -35,11 +35,12 @@ int run(int argc, char** argv) {
   root.require_subcommand(1);
   root.formatter(std::make_shared<HelpFormatter>());
 
-  const std::vector<Verb> verbs = {
-      add_info(root),     add_convert(root), add_candidates(root), add_simulate(root),
-      add_corrupt(root),  add_densify(root), add_prune(root),      add_optimize(root),
-      add_label(root),    add_eval(root),    add_edges(root),      add_embed(root),
-      add_localize(root), add_report(root),  add_completion(root), add_manual(root)};
+  const std::vector<Verb> verbs = {add_info(root),       add_convert(root),  add_candidates(root),
+                                   add_simulate(root),   add_corrupt(root),  add_densify(root),
+                                   add_prune(root),      add_follow(root),   add_optimize(root),
+                                   add_label(root),      add_eval(root),     add_edges(root),
+                                   add_embed(root),      add_localize(root), add_report(root),
+                                   add_completion(root), add_manual(root)};
   const auto words = command_words(argc, argv);
   try {
     // CLI11 takes them last first.

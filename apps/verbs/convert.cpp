@@ -12,6 +12,8 @@
 
 #include "console.hpp"
 #include "isotherm/network/io/range_file.hpp"
+#include "isotherm/slam/evaluate/labels.hpp"
+#include "isotherm/slam/graph/replay_order.hpp"
 #include "isotherm/slam/io/file_format.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm/slam/io/trajectory_file.hpp"
@@ -77,6 +79,8 @@ struct ConvertVerb : OptionVerb<NoOptions> {
   std::string output;
   std::string to;
   std::string axes;
+  std::string labels;
+  bool in_time_order = false;
 
   int run() {
     if (resolve_or_dump()) return kOk;
@@ -165,6 +169,10 @@ struct ConvertVerb : OptionVerb<NoOptions> {
     if (!axes.empty() && slam::content_of(target) != FileContent::trajectory) {
       throw InvalidArgument("--axes", "are turned in trajectories only");
     }
+    if (!labels.empty()) write_known_labels(file);
+    if (in_time_order) {
+      std::visit([](auto& graph) { graph = in_replay_order(std::move(graph)); }, file.graph);
+    }
     if (target == FileFormat::g2o) {
       slam::write_g2o(output, file);
     } else if (target == FileFormat::toro) {
@@ -183,6 +191,26 @@ struct ConvertVerb : OptionVerb<NoOptions> {
       refuse(file.report, target);
     }
     return file.report;
+  }
+
+  // What an IRL file says of its loops.
+  void write_known_labels(const slam::PoseGraphFile& file) const {
+    if (file.correct.empty()) {
+      throw InvalidArgument("--labels",
+                            "are known of IRL files only, not of " + file.report.format);
+    }
+    if (in_time_order) throw InvalidArgument("--labels", "count edges in the order of the input");
+    std::vector<slam::EdgeLabel> rows;
+    std::visit(
+        [&](const auto& graph) {
+          for (const auto k : edge_roles(graph).candidates) {
+            const auto& edge = graph.constraints[k];
+            const auto label = file.correct[k] ? slam::Label::correct : slam::Label::incorrect;
+            rows.push_back({k, graph.ids[edge.from], graph.ids[edge.to], label});
+          }
+        },
+        file.graph);
+    slam::write_labels(labels, rows);
   }
 
   ReadReport convert_trajectory(const slam::TrajectoryFile& file, FileFormat target) const {
@@ -247,6 +275,10 @@ Verb add_convert(CLI::App& root) {
                    "binary-graph; by default what the output's suffix says (.g2o .graph .tum "
                    ".kitti .euroc .pyfg .mtx .isograph)")
       ->type_name("FORMAT");
+  convert->flags.outputs.add(*verb, "--labels", convert->labels,
+                             "which loops an IRL file says are true, as CSV", {".csv"});
+  verb->add_flag("--in-time-order", convert->in_time_order,
+                 "write the edges of a pose graph in an order that 'follow' can replay");
   verb->add_option("--axes", convert->axes,
                    "turn a trajectory in space: a camera's axes are z forward, x right, y down, "
                    "a vehicle's x forward, y left, z up")

@@ -13,6 +13,7 @@ Verb add_simulate_network(CLI::App& simulate);
 Verb add_corrupt(CLI::App& root);
 Verb add_densify(CLI::App& root);
 Verb add_prune(CLI::App& root);
+Verb add_follow(CLI::App& root);
 Verb add_optimize(CLI::App& root);
 Verb add_label(CLI::App& root);
 Verb add_edges(CLI::App& root);

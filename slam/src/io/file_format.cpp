@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/incremental/irl_reader.hpp"
 #include "isotherm/network/io/range_rows.hpp"
 
 namespace isotherm::slam {
@@ -105,6 +106,7 @@ FileContent content_of(FileFormat format) {
     case FileFormat::g2o:
     case FileFormat::toro:
     case FileFormat::edge_rows:
+    case FileFormat::irl:
     case FileFormat::places:
       return FileContent::pose_graph;
     case FileFormat::pyfg:
@@ -133,6 +135,7 @@ FileContent content_of(FileFormat format) {
 FileFormat detect_format(TextReader& reader) {
   std::string_view rest = reader.peek();
   if (rest.starts_with("ISOGRAPH")) return FileFormat::binary_graph;
+  if (detail::irl_header(rest)) return FileFormat::irl;
   const auto rows = format_of_rows(rest);
   if (rows != FileFormat::unknown) return rows;
   while (!rest.empty()) {

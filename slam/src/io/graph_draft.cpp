@@ -349,6 +349,9 @@ PoseGraphFile finish(FileDraft draft, const ReadOptions& options) {
   const auto finished = [&](auto& graph) {
     return Finisher(std::move(graph), draft.paths, options, file.report).run(draft.fixed);
   };
+  if (draft.paths.size() == 1) {
+    file.correct = std::move(draft.spatial.empty() ? draft.planar.correct : draft.spatial.correct);
+  }
   if (draft.spatial.empty()) {
     file.graph = finished(draft.planar);
   } else {

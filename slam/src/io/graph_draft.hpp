@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +32,7 @@ struct GraphDraft {
   std::vector<Constraint<Pose>> constraints;           // ends not set
   std::vector<std::pair<VertexId, VertexId>> end_ids;  // one a constraint
   std::vector<Suspect> indefinite;                     // not positive semi-definite
+  std::vector<bool> correct = {};                      // one a constraint, where a file says so
   std::vector<std::size_t> ends_of_files = {};         // of all but the last: constraints so far
 
   bool empty() const noexcept { return vertices.empty() && constraints.empty(); }
@@ -55,6 +57,10 @@ struct FileDraft {
 /// Reads what a file says, in one pass.
 /// @throws ParseError if it is malformed or empty
 FileDraft read_draft(TextReader& reader, FileFormat format, const ReadOptions& options);
+
+/// A function that reads the present line of `reader`, which must outlive it, by itself.
+std::function<FileDraft()> line_reader(TextReader& reader, FileFormat format,
+                                       const ReadOptions& options);
 
 /// Adds what `next`, a single file, has: vertices of the same id are the same.
 /// @throws ParseError if one has planar poses and the other spatial ones

@@ -1,12 +1,15 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <string_view>
 #include <utility>
 
 #include <Eigen/LU>
 
 #include "io/graph_draft.hpp"
+#include "io/incremental/irl_reader.hpp"
 #include "io/information_check.hpp"
 #include "io/pose_fields.hpp"
 #include "io/unused_records.hpp"
@@ -98,6 +101,13 @@ class PoseGraphReader {
     while (text_.next_line()) read_line();
     finish();
     return std::move(file_);
+  }
+
+  /// What the present line says, by itself.
+  FileDraft one_line() {
+    file_ = {};
+    read_line();
+    return file_;
   }
 
  private:
@@ -357,7 +367,14 @@ class PoseGraphReader {
 
 }  // namespace
 
+std::function<FileDraft()> line_reader(TextReader& reader, FileFormat format,
+                                       const ReadOptions& options) {
+  auto lines = std::make_shared<PoseGraphReader>(reader, format, options);
+  return [lines] { return lines->one_line(); };
+}
+
 FileDraft read_draft(TextReader& reader, FileFormat format, const ReadOptions& options) {
+  if (format == FileFormat::irl) return read_irl(reader, options);
   return PoseGraphReader(reader, format, options).run();
 }
 

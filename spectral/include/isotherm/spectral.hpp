@@ -31,6 +31,7 @@
 #include "isotherm/spectral/resistance/effective_resistance.hpp"
 #include "isotherm/spectral/sparse/block_cholesky.hpp"
 #include "isotherm/spectral/sparse/block_covariance.hpp"
+#include "isotherm/spectral/sparse/branch_covariance.hpp"
 #include "isotherm/spectral/sparse/damped_step.hpp"
 #include "isotherm/spectral/sparse/laplacian_solver.hpp"
 #include "isotherm/spectral/types.hpp"

@@ -5,6 +5,7 @@
 
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/random.hpp"
+#include "isotherm/spectral/sparse/branch_covariance.hpp"
 #include "sparse/block_order.hpp"
 
 namespace isotherm::spectral {
@@ -111,6 +112,27 @@ TYPED_TEST(PairCovarianceOf, RowsThatAreNotThereAreZero) {
   EXPECT_EQ(answers[2].second.norm(), 0.0);
 }
 
+TYPED_TEST(PairCovarianceOf, AreThoseOfOneFunctionAtATime) {
+  constexpr int kDof = TypeParam::value;
+  using Branches = BranchCovariance<kDof>;
+  Random random(6);
+  const auto system =
+      random_system<kDof>(random, 30, {{0, 1}, {1, 2}, {2, 3}, {3, 9}, {9, 20}, {20, 0}, {5, 6}});
+  const Branches branches(system.blocks);
+  for (const auto& [a, b] : Pairs{{0, 9}, {20, 20}, {5, 2}, {6, -1}, {-1, -1}}) {
+    std::vector<typename Branches::Term> terms(2);
+    terms[0].row = a;
+    terms[1].row = b;
+    Eigen::MatrixXd G = Eigen::MatrixXd::Zero(30 * kDof, kDof);
+    for (auto& term : terms) {
+      for (int e = 0; e < term.G.size(); ++e) term.G(e) = random.normal();
+      if (term.row >= 0) G.template middleRows<kDof>(term.row * kDof) += term.G;
+    }
+    const auto covariance = branches.of(terms);
+    EXPECT_LT((covariance - G.transpose() * system.inverse * G).norm(), 1e-12) << a << " " << b;
+  }
+}
+
 TEST(PairCovariance, NeedsASupernodalFactor) {
   const Pairs pairs = {{0, 1}};
   BlockCholesky blocks(3, 2, pairs);
@@ -118,6 +140,7 @@ TEST(PairCovariance, NeedsASupernodalFactor) {
   blocks.add_diagonal(1, Eigen::Matrix3d::Identity().eval());
   ASSERT_TRUE(blocks.factorise());
   EXPECT_THROW(pair_covariances<3>(blocks, pairs), InvalidArgument);
+  EXPECT_THROW(BranchCovariance<3>{blocks}, InvalidArgument);
   EXPECT_TRUE(pair_covariances<3>(blocks, {}).empty());
 
   const BlockCholesky without_factor(3, 2, pairs, FactorForm::supernodal);

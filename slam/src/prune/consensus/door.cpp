@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -7,22 +6,12 @@
 #include <vector>
 
 #include "isotherm/slam/prune/prune.hpp"
+#include "prune/consensus/judge.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
 
 constexpr double kMeaningless = 2.0;  // deviations of the prior, each a factor of ten in errors
-
-// Whether covariances can be had of odometry and of loops: some matrix of each says
-// something.
-template <class Pose>
-bool has_information(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
-  const auto says_something = [&graph](Index k) {
-    return !graph.constraints[k].information.isZero(0.0);
-  };
-  return std::ranges::any_of(roles.odometry, says_something) &&
-         std::ranges::any_of(roles.candidates, says_something);
-}
 
 // What needs no information matrices, in place of consensus.
 template <class Pose>

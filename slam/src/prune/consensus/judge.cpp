@@ -1,30 +1,19 @@
 #include "prune/consensus/judge.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
-#include <limits>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "graph/candidate_verdicts.hpp"
 #include "prune/consensus/climb/climb.hpp"
+#include "prune/consensus/climb/report.hpp"
 #include "prune/consensus/climb/starts.hpp"
-#include "prune/consensus/objective/log_odds.hpp"
-#include "prune/consensus/objective/log_sum.hpp"
 
 namespace isotherm::slam {
 namespace {
 
 using detail::Explanation;
-using detail::log_sum;
-using spectral::Verdict;
-
-constexpr double kNegligible = -20.0;  // log weight of an explanation
-
-// Fewer loops say too little of how accurate odometry is for one of them to be pruned.
-constexpr std::size_t kFewLoops = 5;
 
 // Nothing accepted, and what the climbs found; the best first.
 template <class Pose>
@@ -36,75 +25,16 @@ std::vector<Explanation<Pose>> explanations(detail::Climb<Pose>& climb, bool cal
   return found;
 }
 
-// Each loop's log odds by all explanations, by their evidence; the best is first. One at about the
-// scale of a better one that keeps the same loops is the same peak.
-template <class Pose>
-std::vector<double> mean_log_odds(const std::vector<Explanation<Pose>>& found) {
-  constexpr double kNone = -std::numeric_limits<double>::infinity();
-  std::vector<double> log_true(found.front().standings.size(), kNone);
-  std::vector<double> log_false = log_true;
-  for (auto at = found.begin(); at != found.end(); ++at) {
-    const double log_weight = at->evidence - found.front().evidence;
-    const bool same = std::any_of(found.begin(), at, [&](const auto& better) {
-      return better.accepted == at->accepted &&
-             std::abs(std::log(better.scale.odometry / at->scale.odometry)) < 1.0;
-    });
-    if (same || log_weight < kNegligible) continue;
-    for (std::size_t k = 0; k < log_true.size(); ++k) {
-      const double log_odds = at->standings[k].log_odds;
-      log_true[k] = log_sum(log_true[k], log_weight - log_sum(0.0, -log_odds));
-      log_false[k] = log_sum(log_false[k], log_weight - log_sum(0.0, log_odds));
-    }
-  }
-  for (std::size_t k = 0; k < log_true.size(); ++k) log_true[k] -= log_false[k];
-  return log_true;
-}
-
-// Without `refutable` nothing can speak against the loop.
-Verdict verdict_of(bool accepted, double log_odds, double decisive, bool refutable) {
-  if (accepted && log_odds > decisive) return Verdict::keep;
-  return log_odds < -decisive && refutable ? Verdict::prune : Verdict::ambiguous;
-}
-
-std::string stage_of(bool accepted, const detail::Standing& standing) {
-  if (accepted) return "accepted";
-  return standing.connected() ? "rejected" : "unconnected";
-}
-
-template <class Pose>
-void report(const std::vector<Explanation<Pose>>& found, double significance,
-            ConsensusResult& result) {
-  const auto& best = found.front();
-  const auto& standings = best.standings;
-  const auto log_odds = mean_log_odds(found);
-  const double decisive = detail::log_odds_of(1.0 - significance);
-  const bool many = standings.size() >= kFewLoops;
-  for (std::size_t k = 0; k < standings.size(); ++k) {
-    auto& verdict = result.verdicts[k];
-    verdict.score = -log_odds[k];
-    verdict.threshold = decisive;
-    verdict.verdict =
-        verdict_of(best.accepted[k], log_odds[k], decisive, many && standings[k].connected());
-    verdict.stage = stage_of(best.accepted[k], standings[k]);
-    verdict.probability = 1.0 / (1.0 + std::exp(-log_odds[k]));
-    result.details.push_back({.probability = verdict.probability,
-                              .evidence = standings[k].evidence,
-                              .chi2 = standings[k].chi2,
-                              .connected = standings[k].connected()});
-  }
-  result.odometry_scale = best.scale.odometry;
-  result.loop_scale = best.scale.loops;
-  for (int d = 0; d < Pose::kDof; ++d) {
-    result.odometry_scales.push_back(best.scale.odometry * best.shapes.odometry[d]);
-    result.loop_scales.push_back(best.scale.loops * best.shapes.loops[d]);
-  }
-  result.rotation_scale = detail::rotation_against_translation<Pose>(best.shapes.loops);
-  result.share_as_stated =
-      std::exp(detail::expected_mixture(best.scale.loops, best.shares).log_share.back());
-  result.log_evidence = best.evidence;
-}
-
 }  // namespace
+
+template <class Pose>
+bool detail::has_information(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
+  const auto says_something = [&graph](Index k) {
+    return !graph.constraints[k].information.isZero(0.0);
+  };
+  return std::ranges::any_of(roles.odometry, says_something) &&
+         std::ranges::any_of(roles.candidates, says_something);
+}
 
 template <class Pose>
 ConsensusResult detail::judge_by_evidence(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
@@ -117,7 +47,7 @@ ConsensusResult detail::judge_by_evidence(const PoseGraph<Pose>& graph, const Ed
   const auto found = explanations(climb, options.calibrate);
   result.moves = climb.moves();
   result.settled = climb.settled();
-  report(found, options.significance, result);
+  detail::report(found, options.significance, result);
   return result;
 }
 
@@ -125,5 +55,8 @@ template ConsensusResult detail::judge_by_evidence(const PoseGraph<Pose2>&, cons
                                                    const ConsensusOptions&, const RunContext&);
 template ConsensusResult detail::judge_by_evidence(const PoseGraph<Pose3>&, const EdgeRoles&,
                                                    const ConsensusOptions&, const RunContext&);
+
+template bool detail::has_information(const PoseGraph<Pose2>&, const EdgeRoles&);
+template bool detail::has_information(const PoseGraph<Pose3>&, const EdgeRoles&);
 
 }  // namespace isotherm::slam

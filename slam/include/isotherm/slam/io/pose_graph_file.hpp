@@ -25,6 +25,8 @@ struct PoseGraphFile {
   /// Comments and records of kinds this library does not know, as they stand.
   std::vector<std::string> other_lines;
   std::vector<std::string> paths;  ///< of the files that it was read from
+  /// Whether each constraint is true, where a file says so (IRL); else empty.
+  std::vector<bool> correct = {};
 
   // A file is its graph where a graph is asked for.
   operator const AnyPoseGraph&() const& { return graph; }

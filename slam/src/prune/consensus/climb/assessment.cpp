@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "isotherm/base/statistics.hpp"
 #include "prune/consensus/objective/loop_gain.hpp"
@@ -14,13 +15,19 @@ constexpr double kSameWeight = 0.05;  // of its log
 constexpr double kHopeless = 50.0;  // log odds against, by a bound, beyond which none is solved for
 constexpr int kFixedPointSteps = 30;
 
+// What takes as long as to linearise and factorise so many links: covariances, of each link, and
+// the density of near pairs (measured).
+constexpr double kCovarianceWork = 2.0;
+constexpr double kNearnessWork = 2500.0;
+
 }  // namespace
 
 template <class Pose>
-Assessment<Pose>::Assessment(const Objective<Pose>& objective)
+Assessment<Pose>::Assessment(const Objective<Pose>& objective, Pace pace)
     : objective_(objective),
+      pace_(std::move(pace)),
       found_{.graph = std::make_shared<ScaledGraph<Pose>>(objective.stated())},
-      estimate_(found_.graph->reduced),
+      estimate_(found_.graph->reduced, pace_),
       odometry_(estimate_.layout()) {
   found_.covariances.resize(graph().loops.size());
 }
@@ -43,11 +50,15 @@ void Assessment<Pose>::assess(Explanation<Pose>& now) {
   rescale(now.shapes);
   found_.mixture = expected_mixture(now.scale.loops, now.shares);
   find_peak(now);
-  found_.near = objective_.near(estimate_.poses());
+  if (!nearness_held_) found_.near = objective_.near(estimate_.poses());
   bound(now);
   weigh(now);
   add_prior(now);
   now.layout = estimate_.layout();
+  if (pace_) {
+    const auto links = static_cast<double>(graph().steps.size() + graph().loops.size());
+    pace_(kCovarianceWork * links + (nearness_held_ ? 0.0 : kNearnessWork));
+  }
   now.evidence = objective_.evidence(now, *found_.graph, estimate_, found_.near);
 }
 

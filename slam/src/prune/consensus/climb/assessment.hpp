@@ -16,10 +16,14 @@ class Assessment {
   using Matrix = typename Pose::Matrix;
 
   /// `objective` must outlive this object.
-  explicit Assessment(const Objective<Pose>& objective);
+  explicit Assessment(const Objective<Pose>& objective, Pace pace = {});
 
   /// Back to the layout of odometry.
   void start_over();
+
+  /// Whether the density of near pairs stays what it was found to be, whatever the layout: that
+  /// changes slowly, and takes longest on small graphs.
+  void hold_nearness(bool held) { nearness_held_ = held; }
 
   /// Sets the weights, the layout and the evidence of `now`.
   /// @throws NumericalError if the normal equations break down
@@ -67,9 +71,11 @@ class Assessment {
   void add_prior(Explanation<Pose>& now) const;
 
   const Objective<Pose>& objective_;
+  Pace pace_;
   Findings found_;
   Estimate<Pose> estimate_;
   typename Estimate<Pose>::Layout odometry_;
+  bool nearness_held_ = false;
 };
 
 extern template class Assessment<Pose2>;

@@ -31,8 +31,11 @@ bool is_part(const std::vector<bool>& part, const std::vector<bool>& whole) {
 
 template <class Pose>
 Climb<Pose>::Climb(const Objective<Pose>& objective, const ConsensusOptions& options,
-                   const ProgressCallback& progress)
-    : objective_(objective), options_(options), progress_(progress), assessment_(objective) {}
+                   const ProgressCallback& progress, Pace pace)
+    : objective_(objective),
+      options_(options),
+      progress_(progress),
+      assessment_(objective, std::move(pace)) {}
 
 template <class Pose>
 Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
@@ -46,6 +49,38 @@ Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
   } while (best_.evidence > before + kBetter);
   peaks_.push_back(best_);
   return best_;
+}
+
+template <class Pose>
+Explanation<Pose> Climb<Pose>::resume(Explanation<Pose> before,
+                                      typename Assessment<Pose>::Findings found) {
+  now_ = std::move(before);
+  dropped_.assign(now_.accepted.size(), false);
+  learnt_from_ = 0;
+  assessment_.restore(now_, std::move(found));
+  assessment_.assess(now_);
+  failed_ = {};
+  predict_runs();
+  best_ = now_;
+  int vain = 0;
+  for (int round = 0; round < options_.max_rounds && vain < kPatience; ++round) {
+    tell_progress();
+    const double highest = best_.evidence;
+    if (!shift() && !learn_more_than(0.0)) break;
+    vain = best_.evidence > highest + kBetter ? 0 : vain + 1;
+  }
+  peaks_.push_back(best_);
+  return best_;
+}
+
+template <class Pose>
+void Climb<Pose>::stand_at(const Explanation<Pose>& found) {
+  const bool there = now_.accepted == found.accepted && now_.evidence == found.evidence &&
+                     now_.scale == found.scale && now_.shapes == found.shapes;
+  if (there && assessment_.estimate().is_factorised()) return;
+  now_ = found;
+  assessment_.restore(now_, assessment_.findings());
+  assess();
 }
 
 // Grows to them first, the most certain before the rest, so that poses come near.
@@ -136,6 +171,12 @@ const Explanation<Pose>* Climb<Pose>::grow() {
 // False where no move is left.
 template <class Pose>
 bool Climb<Pose>::move() {
+  return shift() || learn_more_than(0.0) || weigh_otherwise();
+}
+
+// The same at about these scales.
+template <class Pose>
+bool Climb<Pose>::shift() {
   const Selection out = misfits();
   const Group batch = next_batch();
   const double dropping = gain_of_dropping(out);
@@ -144,7 +185,7 @@ bool Climb<Pose>::move() {
   } else if (!out.empty()) {
     if (!learn_more_than(dropping)) drop(out);
   } else {
-    return learn_more_than(0.0) || weigh_otherwise();
+    return false;
   }
   return true;
 }

@@ -21,11 +21,24 @@ class Climb {
 
   /// All must outlive this object.
   Climb(const Objective<Pose>& objective, const ConsensusOptions& options,
-        const ProgressCallback& progress);
+        const ProgressCallback& progress, Pace pace = {});
 
   /// Climbs from nothing accepted, with `start` as the factors on the covariances; the best
   /// explanation on the way.
   Explanation<Pose> from(const CovarianceScale& start);
+
+  /// Goes on from `before`, where `found` was found: loops are accepted and dropped and scales
+  /// learnt while that helps, without looking for other scales. Later climbs know the peak.
+  Explanation<Pose> resume(Explanation<Pose> before, typename Assessment<Pose>::Findings found);
+
+  /// See Assessment.
+  void hold_nearness(bool held) { assessment_.hold_nearness(held); }
+
+  /// Goes back to an explanation that was found.
+  void stand_at(const Explanation<Pose>& found);
+
+  /// Of the explanation that the last call ended at.
+  const Assessment<Pose>& assessment() const noexcept { return assessment_; }
 
   /// What explains best that exactly these loops are true, from `start`.
   Explanation<Pose> settled_on(const std::vector<bool>& accepted, const CovarianceScale& start);
@@ -46,6 +59,7 @@ class Climb {
   double summit() const;
   const Explanation<Pose>* grow();
   bool move();
+  bool shift();
   void assess();
   std::size_t accepted_count() const;
   Selection misfits() const;

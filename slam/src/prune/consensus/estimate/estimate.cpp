@@ -14,8 +14,8 @@ constexpr double kSettled = 0.1;
 }  // namespace
 
 template <class Pose>
-Estimate<Pose>::Estimate(const ReducedGraph<Pose>& graph)
-    : graph_(&graph), poses_(graph.poses), component_(graph.chain) {}
+Estimate<Pose>::Estimate(const ReducedGraph<Pose>& graph, Pace pace)
+    : graph_(&graph), poses_(graph.poses), component_(graph.chain), pace_(std::move(pace)) {}
 
 template <class Pose>
 void Estimate<Pose>::use(const ReducedGraph<Pose>& graph) {
@@ -45,6 +45,7 @@ void Estimate<Pose>::linearize(const CovarianceScale& scale) {
   if (!equations_->hessian().factorise()) {
     throw NumericalError("consensus", "the normal equations are not positive definite");
   }
+  if (pace_) pace_(static_cast<double>(equations_->constraint_count()));
 }
 
 // Whether it was one that does not matter. The Newton decrement is the squared length of the

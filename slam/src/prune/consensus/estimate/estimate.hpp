@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "optimize/normal_equations.hpp"
+#include "prune/consensus/estimate/pace.hpp"
 #include "prune/consensus/estimate/reduced_graph.hpp"
 
 namespace isotherm::slam::detail {
@@ -28,7 +29,7 @@ class Estimate {
   using Tangent = typename Pose::Tangent;
 
   /// `graph` must outlive this object. Starts at odometry.
-  explicit Estimate(const ReducedGraph<Pose>& graph);
+  explicit Estimate(const ReducedGraph<Pose>& graph, Pace pace = {});
 
   /// The same poses on the same graph with other covariances; update() must follow.
   void use(const ReducedGraph<Pose>& graph);
@@ -77,6 +78,13 @@ class Estimate {
   /// log|H|, of the factor of the last update.
   double log_determinant() const { return equations_->hessian().log_determinant(); }
 
+  /// Whether nothing has changed since the last update.
+  bool is_factorised() const noexcept { return equations_.has_value(); }
+
+  /// What was factorised by the last update; its variables are those of gauge().
+  const spectral::BlockCholesky& factor() const { return equations_->hessian(); }
+  const Gauge& gauge() const { return equations_->gauge(); }
+
   /// Number of poses that are free, as of the last update.
   Index variable_count() const { return equations_->hessian().block_count(); }
 
@@ -94,6 +102,7 @@ class Estimate {
   std::vector<Index> used_loops_;   // of laid_out_for_, those between different nodes
   std::vector<double> weights_;
   std::optional<NormalEquations<Pose>> equations_;
+  Pace pace_;  // after every factorisation
 };
 
 /// The part of log(T_measured^-1 T) that changes with T: J with

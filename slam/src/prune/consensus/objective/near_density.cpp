@@ -85,8 +85,7 @@ void NearDensity<Pose>::fit(const ReducedGraph<Pose>& graph) {
 // f is normal around the median or has the shape of k, with even odds: measurements are often
 // much alike, those of false loops above all, and some are not.
 template <class Pose>
-double NearDensity<Pose>::log_false_density(Index loop, const Tangent& scale) const {
-  const Tangent& wide = measured_[loop];
+double NearDensity<Pose>::log_false_density_of(const Tangent& wide, const Tangent& scale) const {
   const Tangent variance = spread_ + scale.cwiseMax(1.0).cwiseProduct(own_);
   const Tangent ratio = inverse_deviation_.cwiseProduct(variance.cwiseSqrt()).cwiseInverse();
   const double nearer = wide.squaredNorm() - wide.cwiseProduct(ratio).squaredNorm();

@@ -77,6 +77,9 @@ class Objective {
   double log_alternative(Index loop, const NearByClass& near, double loop_scale,
                          const typename Pose::Tangent& shape) const;
 
+  /// How easily poses are near each other, for loops that are not among the graph's.
+  const NearDensity<Pose>& nearness() const noexcept { return near_; }
+
   /// Of the logs of the factors on covariances that measurements of this redundancy tell.
   CovarianceScale scale_deviation(const Redundancy<Pose>& redundancy) const {
     if (!calibrate_) return {0.0, 0.0};

@@ -1,7 +1,6 @@
 #include "prune/consensus/objective/own_frames.hpp"
 
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -30,10 +29,7 @@ double log_volume_apart(const Constraint<Pose>& constraint) {
 template <class Pose>
 void tell_from_own_end(const std::vector<Index>& edges, PoseGraph<Pose>& graph) {
   for (const Index k : edges) {
-    auto& constraint = graph.constraints[k];
-    auto other = reversed(constraint);
-    if (log_volume_apart(other) < log_volume_apart(constraint) - kRounding)
-      constraint = std::move(other);
+    graph.constraints[k] = in_own_frame(graph.constraints[k]);
   }
 }
 
@@ -46,6 +42,14 @@ PoseGraph<Pose> in_own_frames(PoseGraph<Pose> graph, const EdgeRoles& roles) {
   return graph;
 }
 
+template <class Pose>
+Constraint<Pose> in_own_frame(const Constraint<Pose>& constraint) {
+  const auto other = reversed(constraint);
+  return log_volume_apart(other) < log_volume_apart(constraint) - kRounding ? other : constraint;
+}
+
+template Constraint<Pose2> in_own_frame(const Constraint<Pose2>&);
+template Constraint<Pose3> in_own_frame(const Constraint<Pose3>&);
 template PoseGraph<Pose2> in_own_frames(PoseGraph<Pose2>, const EdgeRoles&);
 template PoseGraph<Pose3> in_own_frames(PoseGraph<Pose3>, const EdgeRoles&);
 

@@ -13,4 +13,8 @@ namespace isotherm::slam::detail {
 template <class Pose>
 PoseGraph<Pose> in_own_frames(PoseGraph<Pose> graph, const EdgeRoles& roles);
 
+/// The same of one measurement; its ends change places where it is told from the other.
+template <class Pose>
+Constraint<Pose> in_own_frame(const Constraint<Pose>& constraint);
+
 }  // namespace isotherm::slam::detail

@@ -1,0 +1,225 @@
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "console.hpp"
+#include "isotherm/base/statistics.hpp"
+#include "isotherm/base/words.hpp"
+#include "isotherm/slam/io/pose_graph_file.hpp"
+#include "isotherm/slam/io/pose_graph_stream.hpp"
+#include "isotherm/slam/online/online_consensus.hpp"
+#include "isotherm/spectral/edges/verdict_file.hpp"
+#include "option_verb.hpp"
+#include "verbs/follow/event_lines.hpp"
+#include "verbs/follow/state_file.hpp"
+#include "verbs/verbs.hpp"
+
+namespace isotherm::apps {
+namespace {
+
+using namespace slam;
+using spectral::Verdict;
+
+struct FollowVerb : OptionVerb<OnlineOptions> {
+  std::string input;
+  std::string output;
+  std::string verdicts;
+  std::string events = "-";
+  std::string state;
+  std::string map;
+  std::uint64_t every = 0;
+  bool keep_ambiguous = false;
+
+  int run() {
+    if (resolve_or_dump()) return kOk;
+    if (map.empty() != (every == 0)) throw InvalidArgument("--every", "goes with --map");
+    // What else goes to stdout has it for itself.
+    if (output == "-" || verdicts == "-" || flags.json == "-") {
+      if (events == "-") events.clear();
+    }
+    std::ifstream file;
+    if (input != "-") {
+      file.open(input);
+      if (!file) throw FileError(input, "cannot be opened");
+    }
+    PoseGraphStream stream(input == "-" ? std::cin : file, input);
+    std::vector<VertexId> fixed;  // before it is known whether poses are planar
+    while (auto entry = stream.next()) {
+      if (const auto* held = std::get_if<StreamFixed>(&*entry)) {
+        fixed.push_back(held->id);
+        continue;
+      }
+      const bool planar = std::holds_alternative<StreamVertex<Pose2>>(*entry) ||
+                          std::holds_alternative<StreamEdge<Pose2>>(*entry);
+      return planar ? follow<Pose2>(stream, *entry, fixed) : follow<Pose3>(stream, *entry, fixed);
+    }
+    throw ParseError({input, stream.line_number(), 0}, "",
+                     "no vertex and no edge; expected a pose graph in g2o or TORO format");
+  }
+
+  template <class Pose>
+  class Session;
+
+  template <class Pose>
+  int follow(PoseGraphStream& stream, StreamEntry first, const std::vector<VertexId>& fixed);
+};
+
+// Follows one stream to its end.
+template <class Pose>
+class FollowVerb::Session {
+ public:
+  Session(FollowVerb& verb, PoseGraphStream& stream)
+      : verb_(verb),
+        stream_(stream),
+        events_(verb.events),
+        state_(verb.state),
+        online_(state_.open<Pose>(verb.options, context(verb))) {
+    // A file is followed again from its start; what is known of it is passed over.
+    known_ = verb.input == "-" ? 0 : state_.entries();
+    edges_ = online_.input().constraints.size();
+  }
+
+  void take(const StreamEntry& entry) {
+    if (known_ > 0) {
+      --known_;
+      return;
+    }
+    if (const auto* held = std::get_if<StreamFixed>(&entry)) {
+      online_.fix(held->id);
+    } else if (const auto* vertex = std::get_if<StreamVertex<Pose>>(&entry)) {
+      online_.set_pose(vertex->id, vertex->pose);
+    } else if (const auto* edge = std::get_if<StreamEdge<Pose>>(&entry)) {
+      add(*edge);
+    } else {
+      throw ParseError({verb_.input, stream_.line_number(), 0}, "",
+                       Pose::kDim == 2 ? "spatial record among planar poses"
+                                       : "planar record among spatial poses");
+    }
+  }
+
+  void finish() {
+    const auto start = std::chrono::steady_clock::now();
+    for (const auto& change : online_.finish()) events_.tell(change, edges_);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    const auto decided = online_.verdicts();
+    events_.end(decided, edges_);
+    if (!verb_.output.empty()) {
+      write_g2o(verb_.output, apply_verdicts(online_.graph(), decided, verb_.keep_ambiguous));
+    }
+    if (!verb_.verdicts.empty()) {
+      const auto lettered = [](const auto& row) { return !robot_letter(row.from).empty(); };
+      spectral::write_verdicts(
+          verb_.verdicts, decided,
+          std::ranges::any_of(decided, lettered) ? vertex_name : spectral::VertexNames());
+    }
+    summarise(decided, took.count());
+  }
+
+ private:
+  static RunContext context(const FollowVerb& verb) {
+    return {verb.flags.threads, progress_line(verb.flags), verb.flags.seed};
+  }
+
+  void add(const StreamEdge<Pose>& edge) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto changes = online_.add_edge(edge.from, edge.to, edge.measured.T_from_to,
+                                          edge.measured.information, edge.measured.link);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    seconds_.push_back(took.count());
+    state_.append(online_);  // before anything is said of it
+    for (const auto& change : changes) events_.tell(change, edges_);
+    ++edges_;
+    if (verb_.every > 0 && edges_ % verb_.every == 0) {
+      write_g2o(verb_.map,
+                apply_verdicts(online_.graph(), online_.verdicts(), verb_.keep_ambiguous));
+    }
+  }
+
+  void summarise(const spectral::EdgeVerdicts& decided, double finish) const {
+    double total = 0.0;
+    for (const double seconds : seconds_) total += seconds;
+    const auto latency = [&](double share) {
+      if (seconds_.empty()) return 0.0;
+      return 1e3 * (share < 1.0 ? quantile(seconds_, share) : *std::ranges::max_element(seconds_));
+    };
+    say(verb_.flags,
+        fmt::format("{}, {}: {} kept, {} pruned, {} ambiguous; a call {:.2f} ms (median), {:.1f} "
+                    "ms (99 %), {:.0f} ms (worst); {:.2f} s in all, and {:.2f} s to finish",
+                    counted(edges_, "edge"), counted(decided.size(), "loop"),
+                    count(decided, Verdict::keep), count(decided, Verdict::prune),
+                    count(decided, Verdict::ambiguous), latency(0.5), latency(0.99), latency(1.0),
+                    total, finish));
+    write_json(verb_.flags.json,
+               {{"schema", "isotherm.follow/1"},
+                {"edges", edges_},
+                {"loops", decided.size()},
+                {"kept", count(decided, Verdict::keep)},
+                {"pruned", count(decided, Verdict::prune)},
+                {"ambiguous", count(decided, Verdict::ambiguous)},
+                {"latency_ms",
+                 {{"median", latency(0.5)}, {"p99", latency(0.99)}, {"worst", latency(1.0)}}},
+                {"seconds", total},
+                {"finish_seconds", finish},
+                {"options", options_to_json(verb_.options)}});
+  }
+
+  FollowVerb& verb_;
+  PoseGraphStream& stream_;
+  EventLines events_;
+  StateFile state_;
+  OnlineConsensus<Pose> online_;
+  std::uint64_t known_ = 0;
+  std::uint64_t edges_ = 0;
+  std::vector<double> seconds_;  // one a call
+};
+
+template <class Pose>
+int FollowVerb::follow(PoseGraphStream& stream, StreamEntry first,
+                       const std::vector<VertexId>& fixed) {
+  Session<Pose> session(*this, stream);
+  for (const VertexId id : fixed) session.take(StreamFixed{id});
+  session.take(first);
+  while (const auto entry = stream.next()) session.take(*entry);
+  session.finish();
+  return kOk;
+}
+
+}  // namespace
+
+Verb add_follow(CLI::App& root) {
+  auto follow = std::make_shared<FollowVerb>();
+  CLI::App* verb = root.add_subcommand("follow", "judge loop closures while a pose graph comes in");
+  verb->add_option("input", follow->input,
+                   "pose graph whose lines stand in order of time (- for stdin)")
+      ->required();
+  auto& outputs = follow->flags.outputs;
+  outputs.add(*verb, "-o,--output", follow->output,
+              "pruned pose graph to write at the end, with estimated poses (- for stdout)",
+              {".g2o"});
+  outputs.add(*verb, "--verdicts", follow->verdicts, "final decision a loop, as CSV", {".csv"});
+  outputs.add(*verb, "--events", follow->events,
+              "a JSON line for every verdict that is new or changed (- for stdout, the default)",
+              {});
+  verb->add_option("--state", follow->state,
+                   "file that keeps what has come; a run that was ended goes on from it")
+      ->type_name("FILE");
+  verb->add_option("--map", follow->map, "g2o file to write the present map to, time and again")
+      ->type_name("FILE");
+  verb->add_option("--every", follow->every, "edges after which it is written again")
+      ->type_name("N");
+  verb->add_flag("--keep-ambiguous", follow->keep_ambiguous,
+                 "leave loops that are not proven either way in the graph");
+  follow->add_flags(*verb);
+  return verb_of(verb, follow);
+}
+
+}  // namespace isotherm::apps

@@ -1,0 +1,289 @@
+#include "online/engine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "isotherm/base/error.hpp"
+#include "online/reason.hpp"
+#include "prune/consensus/climb/report.hpp"
+#include "prune/consensus/objective/log_odds.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+// Searches from every start begin where one of the loops can be pruned, and then whenever there are
+// four times as many, so that all of them together take little longer than the last. That is done
+// by the time that there are a quarter more edges; of so few loops, as soon as it can be.
+constexpr Index kFirst = detail::kFewLoops;
+constexpr Index kGrowth = 4;
+constexpr double kUntil = 0.25;
+constexpr Index kFew = 32;
+
+// What a call may do: about one solution of the map, of so many factorisations, and of a small one
+// some 20 ms.
+constexpr double kFactorisations = 3.0;
+constexpr double kLeastWork = 1e4;
+
+double most_work(std::size_t edges) {
+  return std::max(kFactorisations * static_cast<double>(edges), kLeastWork);
+}
+
+}  // namespace
+
+template <class Pose>
+OnlineEngine<Pose>::OnlineEngine(const OnlineOptions& options, RunContext run)
+    : options_(options), run_(std::move(run)) {}
+
+template <class Pose>
+std::vector<LoopChange> OnlineEngine<Pose>::add(VertexId from, VertexId to, const Pose& T_from_to,
+                                                const Matrix& information, LinkKind link) {
+  add_silently(from, to, T_from_to, information, link);
+  const auto edge = static_cast<Index>(rows_.size()) - 1;
+  if (!log_.edges().back().step) judge(edge);
+  go_on();
+  return changes();
+}
+
+template <class Pose>
+void OnlineEngine<Pose>::add_silently(VertexId from, VertexId to, const Pose& T_from_to,
+                                      const Matrix& information, LinkKind link) {
+  const bool step = log_.add(from, to, T_from_to, information, link).step;
+  rows_.emplace_back();
+  if (!step) ++loops_;
+  credit_ += options_.effort * search_work_;
+}
+
+template <class Pose>
+void OnlineEngine<Pose>::ask_to_go_on() const {
+  if (!run_.progress) return;
+  const auto edges = static_cast<std::uint64_t>(rows_.size());
+  if (!run_.progress({"online", edges, 0})) throw Cancelled();
+}
+
+template <class Pose>
+void OnlineEngine<Pose>::go_on() {
+  ask_to_go_on();
+  if (loops_ == 0) return;
+  const auto work = most_work(rows_.size());
+  const bool few = searched_ <= kFew;
+  search_everywhere(!map_ ? kNoLimit : few ? work : std::min(work, search_work_ / kUntil));
+  follow_up(std::min(credit_, work));
+}
+
+// The first loop's, to hold others against; then from every start, where loops have grown enough.
+template <class Pose>
+void OnlineEngine<Pose>::search_everywhere(double budget) {
+  if (!everywhere_) {
+    const bool due = loops_ >= kFirst && loops_ >= kGrowth * searched_;
+    if (!due && map_) return;
+    if (due) searched_ = loops_;
+    everywhere_ = begin(due);
+  }
+  if (!run(*everywhere_, budget)) return;
+  const auto map = everywhere_->map;
+  const double edges = static_cast<double>(map->graph().constraints.size());
+  search_work_ = everywhere_->task->spent() / edges;
+  everywhere_.reset();
+  const bool latest = !map_ || map->graph().constraints.size() >= map_->graph().constraints.size();
+  if (latest) {
+    next_.reset();
+    adopt(map);
+  } else if (map->explained() && map->surpassed()) {
+    rival_ = map;
+  }
+}
+
+// From where the last one stood, as soon as there is a loop that it has not seen.
+template <class Pose>
+void OnlineEngine<Pose>::follow_up(double budget) {
+  if (!map_ || budget <= 0.0) return;
+  if (!next_) {
+    const auto seen = static_cast<Index>(map_->graph().constraints.size());
+    const auto& edges = log_.edges();
+    const bool news =
+        std::any_of(edges.begin() + seen, edges.end(), [](const auto& edge) { return !edge.step; });
+    if (!news && !rival_) return;
+    next_ = begin(false);
+    rival_.reset();
+  }
+  const double before = next_->task->spent();
+  const bool done = run(*next_, budget);
+  credit_ -= next_->task->spent() - before;
+  if (!done) return;
+  const auto map = next_->map;
+  next_.reset();
+  adopt(map);
+}
+
+template <class Pose>
+typename OnlineEngine<Pose>::Search OnlineEngine<Pose>::begin(bool everywhere) const {
+  Search search{std::make_shared<Snapshot<Pose>>(log_.graph(), options_.consensus)};
+  for (const auto& other : {map_, rival_}) {
+    if (other) search.from.push_back(other);
+  }
+  search.task = std::make_unique<detail::PacedTask>(
+      [map = search.map.get(), from = search.from, everywhere](const detail::Pace& pace) {
+        std::vector<const Snapshot<Pose>*> others;
+        for (const auto& other : from) others.push_back(other.get());
+        map->explain(others, everywhere, pace);
+      });
+  return search;
+}
+
+// Where the equations break down nothing is explained, and what was stays.
+template <class Pose>
+bool OnlineEngine<Pose>::run(Search& search, double budget) {
+  try {
+    return search.task->run(budget);
+  } catch (const NumericalError&) {
+    search.map = std::make_shared<Snapshot<Pose>>(search.map->graph(), options_.consensus);
+    return true;
+  }
+}
+
+template <class Pose>
+void OnlineEngine<Pose>::adopt(std::shared_ptr<Snapshot<Pose>> map) {
+  const auto seen = static_cast<Index>(map->graph().constraints.size());
+  take_over(map->verdicts());
+  outlook_.reset();
+  map_ = std::move(map);
+  if (map_->explained()) outlook_.emplace(log_, *map_, options_.consensus);
+  for (Index k = seen; k < static_cast<Index>(rows_.size()); ++k) {
+    if (!log_.edges()[k].step) judge(k);
+  }
+}
+
+template <class Pose>
+void OnlineEngine<Pose>::take_over(const PruneResult& result) {
+  const auto& details = result.consensus.details;
+  for (std::size_t k = 0; k < result.verdicts.size(); ++k) {
+    const double chi2 = details.empty() ? 0.0 : details[k].chi2;
+    set(result.verdicts[k], detail::reason_of(result.verdicts[k], chi2));
+  }
+}
+
+// A loop that came after the snapshot, by that.
+template <class Pose>
+void OnlineEngine<Pose>::judge(Index number) {
+  const auto& edge = log_.edges()[number];
+  spectral::EdgeVerdict row{.edge = number, .from = edge.from, .to = edge.to};
+  row.verdict = spectral::Verdict::ambiguous;
+  row.stage = "waiting";
+  double chi2 = 0.0;
+  const auto repeated = log_.repeated_by(edge);
+  if (edge.from == edge.to) {
+    row.stage = "self-edge";
+  } else if (repeated) {
+    const auto& original = rows_[*repeated].now;
+    if (original) row = original->verdict;
+    row.edge = number;
+    if (!original) row.verdict = spectral::Verdict::keep;
+    row.stage = "repeat";
+  } else if (outlook_) {
+    const auto standing = outlook_->standing(number);
+    const bool accepted = standing.connected() && standing.log_odds > 0.0;
+    const bool many = static_cast<std::size_t>(loops_) >= detail::kFewLoops;
+    chi2 = standing.chi2;
+    row.score = -standing.log_odds;
+    row.threshold = detail::log_odds_of(1.0 - options_.consensus.significance);
+    row.verdict = detail::verdict_of(accepted, standing.log_odds, row.threshold,
+                                     many && standing.connected());
+    row.probability = 1.0 / (1.0 + std::exp(-standing.log_odds));
+    row.stage = detail::stage_of(accepted, standing.connected());
+  }
+  auto reason = detail::reason_of(row, chi2);
+  set(std::move(row), std::move(reason));
+}
+
+template <class Pose>
+void OnlineEngine<Pose>::set(spectral::EdgeVerdict verdict, std::string reason) {
+  const auto edge = static_cast<Index>(verdict.edge);
+  Row& row = rows_[edge];
+  row.now = LoopChange{std::move(verdict), std::move(reason), false};
+  if (row.told != row.now->verdict.verdict) fresh_.push_back(edge);
+}
+
+template <class Pose>
+std::vector<LoopChange> OnlineEngine<Pose>::changes() {
+  std::ranges::sort(fresh_);
+  std::vector<LoopChange> changes;
+  for (const Index edge : fresh_) {
+    Row& row = rows_[edge];
+    if (row.told == row.now->verdict.verdict) continue;
+    changes.push_back(*row.now);
+    changes.back().first = !row.told.has_value();
+    row.told = row.now->verdict.verdict;
+  }
+  fresh_.clear();
+  return changes;
+}
+
+template <class Pose>
+std::vector<LoopChange> OnlineEngine<Pose>::catch_up() {
+  if (loops_ > 0) {
+    next_.reset();
+    everywhere_ = begin(loops_ >= kFirst);
+    searched_ = loops_;
+    search_everywhere(kNoLimit);
+    credit_ = 0.0;
+  }
+  return changes();
+}
+
+template <class Pose>
+PruneResult OnlineEngine<Pose>::result() const {
+  const PruneOptions options = options_.consensus;
+  return prune(log_.graph(), options, run_);
+}
+
+template <class Pose>
+std::vector<LoopChange> OnlineEngine<Pose>::finish() {
+  const auto final = result();
+  next_.reset();
+  everywhere_.reset();
+  for (auto& row : rows_) row.now.reset();  // what has become odometry meanwhile has no verdict
+  take_over(final);
+  std::erase_if(fresh_, [this](Index edge) { return !rows_[edge].now; });
+  return changes();
+}
+
+template <class Pose>
+spectral::EdgeVerdicts OnlineEngine<Pose>::verdicts() const {
+  spectral::EdgeVerdicts all;
+  for (const auto& row : rows_) {
+    if (row.now) all.push_back(row.now->verdict);
+  }
+  return all;
+}
+
+// Vertices that the map has not follow odometry.
+template <class Pose>
+PoseGraph<Pose> OnlineEngine<Pose>::graph() const {
+  auto graph = log_.graph();
+  if (!map_ && graph.poses.empty()) graph.poses = odometry_poses(graph, edge_roles(graph));
+  if (!map_) return graph;
+  const auto given = std::move(graph.poses);
+  graph.poses.assign(graph.ids.size(), Pose());
+  for (Index v = 0; v < graph.vertex_count(); ++v) {
+    const auto known = map_->graph().find(graph.ids[v]);
+    const auto pose = known ? map_->pose(*known) : std::nullopt;
+    const auto* step = log_.step_to(graph.ids[v]);
+    if (pose) {
+      graph.poses[v] = *pose;
+    } else if (step != nullptr) {
+      graph.poses[v] = graph.poses[*graph.find(step->before)] * step->path(Pose::Tangent::Ones()).T;
+    } else if (!given.empty()) {
+      graph.poses[v] = given[v];
+    }
+  }
+  return graph;
+}
+
+template class OnlineEngine<Pose2>;
+template class OnlineEngine<Pose3>;
+
+}  // namespace isotherm::slam::detail

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "isotherm/slam/online/online_consensus.hpp"
+#include "online/edge_log.hpp"
+#include "online/outlook.hpp"
+#include "online/paced_task.hpp"
+#include "online/saved_edges.hpp"
+#include "online/snapshot.hpp"
+
+namespace isotherm::slam::detail {
+
+/// Judges each loop when it comes, by the latest snapshot that is explained, and meanwhile explains
+/// the next ones: where the last one stood, as often as effort allows, and from every start
+/// each time loops have doubled.
+template <class Pose>
+class OnlineEngine {
+ public:
+  using Matrix = typename Pose::Matrix;
+
+  OnlineEngine(const OnlineOptions& options, RunContext run);
+
+  std::vector<LoopChange> add(VertexId from, VertexId to, const Pose& T_from_to,
+                              const Matrix& information, LinkKind link);
+  detail::EdgeLog<Pose>& log() noexcept { return log_; }
+  const detail::EdgeLog<Pose>& log() const noexcept { return log_; }
+
+  /// Adds an edge and leaves it at that until catch_up().
+  void add_silently(VertexId from, VertexId to, const Pose& T_from_to, const Matrix& information,
+                    LinkKind link);
+
+  /// What journal() has written.
+  detail::Written& written() noexcept { return written_; }
+
+  std::vector<LoopChange> catch_up();
+  PruneResult result() const;
+  std::vector<LoopChange> finish();
+  spectral::EdgeVerdicts verdicts() const;
+  PoseGraph<Pose> graph() const;
+
+ private:
+  /// A snapshot that is being explained.
+  struct Search {
+    std::shared_ptr<Snapshot<Pose>> map;
+    std::vector<std::shared_ptr<const Snapshot<Pose>>> from;
+    std::unique_ptr<detail::PacedTask> task;
+  };
+
+  /// The verdict on an edge, unless it is a step.
+  struct Row {
+    std::optional<LoopChange> now;
+    std::optional<spectral::Verdict> told;
+  };
+
+  void ask_to_go_on() const;
+  void go_on();
+  void search_everywhere(double budget);
+  void follow_up(double budget);
+  Search begin(bool everywhere) const;
+  bool run(Search& search, double budget);
+  void adopt(std::shared_ptr<Snapshot<Pose>> map);
+  void take_over(const PruneResult& result);
+  void judge(Index edge);
+  void set(spectral::EdgeVerdict verdict, std::string reason);
+  std::vector<LoopChange> changes();
+
+  OnlineOptions options_;
+  RunContext run_;
+  detail::EdgeLog<Pose> log_;
+  detail::Written written_;
+  std::vector<Row> rows_;     // one an edge
+  std::vector<Index> fresh_;  // edges whose verdict may have changed since changes()
+  Index loops_ = 0;           // that have come
+  std::shared_ptr<const Snapshot<Pose>> map_;
+  std::shared_ptr<const Snapshot<Pose>> rival_;  // of a search that led higher
+  std::optional<detail::Outlook<Pose>> outlook_;
+  std::optional<Search> everywhere_;
+  std::optional<Search> next_;
+  Index searched_ = 0;        // loops at the last search from every start
+  double search_work_ = 0.0;  // of that, an edge
+  double credit_ = 0.0;       // work that following up may do
+};
+
+extern template class OnlineEngine<Pose2>;
+extern template class OnlineEngine<Pose3>;
+
+}  // namespace isotherm::slam::detail

@@ -1,0 +1,29 @@
+#include "online/reason.hpp"
+
+#include <iomanip>
+#include <sstream>
+
+namespace isotherm::slam::detail {
+
+std::string reason_of(const spectral::EdgeVerdict& verdict, double chi2) {
+  if (verdict.stage == "self-edge") return "joins a pose with itself";
+  if (verdict.stage == "repeat") return "repeats another edge to the last digit";
+  if (verdict.stage == "waiting") return "nothing to hold it against yet";
+  if (verdict.stage == "unconnected") return "nothing else joins its ends yet";
+  std::ostringstream text;
+  switch (verdict.verdict) {
+    case spectral::Verdict::keep:
+      text << "fits what odometry and the other kept loops say";
+      break;
+    case spectral::Verdict::prune:
+      text << "contradicts odometry and the kept loops, or fits no better than chance";
+      break;
+    case spectral::Verdict::ambiguous:
+      text << "not proven either way";
+      break;
+  }
+  text << " (chi2 " << std::setprecision(3) << chi2 << ')';
+  return text.str();
+}
+
+}  // namespace isotherm::slam::detail

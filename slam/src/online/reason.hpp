@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "isotherm/slam/prune/consensus.hpp"
+
+namespace isotherm::slam::detail {
+
+/// One sentence on why a loop has its verdict.
+std::string reason_of(const spectral::EdgeVerdict& verdict, double chi2);
+
+}  // namespace isotherm::slam::detail
