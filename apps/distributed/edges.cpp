@@ -12,6 +12,7 @@
 #include "isotherm/base/text_writer.hpp"
 #include "isotherm/base/words.hpp"
 #include "isotherm/spectral/edges/edge_verdicts.hpp"
+#include "isotherm/spectral/edges/judge_edges.hpp"
 #include "isotherm/spectral/graph/graph_file.hpp"
 
 namespace isotherm::apps {
@@ -21,7 +22,7 @@ using namespace spectral;
 
 struct EdgesOptions {
   std::vector<double> scales;
-  std::vector<double> konst = {1.0};
+  std::vector<double> konst = {JudgeEdgesOptions{}.konst};  // as on one machine
   double tolerance = 1e-9;
   distributed::Partitioner partitioner = distributed::Partitioner::scotch;
 

@@ -168,10 +168,13 @@ class Rounds {
     if (plane) {
       measured.insert(measured.end(), {plane->crossings, plane->few_crossings, plane->distances});
     }
-    const auto features = pair_features(graph_, trust_of(truth, kEven), thin_out(pairs_), measured,
-                                        {.most_steps = 2 * (horizon_ + options_.rounds - 1),
-                                         .threads = options_.threads,
-                                         .progress = options_.progress});
+    // As far as walks go from both ends.
+    const auto trust = trust_of(truth, kEven);
+    const auto features =
+        pair_features(graph_, trust, thin_out(pairs_), measured,
+                      {.most_steps = 2 * walks(options_.rounds - 1, trust).horizon,
+                       .threads = options_.threads,
+                       .progress = options_.progress});
     auto found = edge_odds(features, std::move(truth));
     return {std::move(found.scores),
             {},

@@ -85,7 +85,8 @@ def edges_do_not_depend_on_ranks(folder):
     texts = {}
     for ranks in (1, 4):
         code, _, err = run(folder, ranks, "edges", "graph.csv", "--trusted", "trusted.csv", "-o",
-                           "kept.csv", "--verdicts", "verdicts.csv", "--scales", "50,5")
+                           "kept.csv", "--verdicts", "verdicts.csv", "--scales", "50,5",
+                           "--konst", 1)
         expect(code == OK and "heat-multiscale" in err, err)
         rows = [row.split(",") for row in (folder / "verdicts.csv").read_text().splitlines()]
         texts[ranks] = ((folder / "kept.csv").read_text(), [row[:4] + row[6:] for row in rows])

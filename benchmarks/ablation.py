@@ -1,0 +1,259 @@
+#!/usr/bin/env python3
+"""What every constant of consensus is worth, on graphs that none was chosen on.
+
+Builds a copy of the sources in which each constant below is read from the environment, and judges
+the same graphs with one constant changed at a time: every small graph in some of the variants of
+support/variants.py, drawn with another seed than those that the search was looked at with, clean
+and with half of the loops false. Writes docs/results/ablation.md and docs/results/data/ablation.csv.
+Runs are kept in build/ablation, so that an interrupted run goes on where it stopped.
+"""
+
+import csv
+import dataclasses
+import functools
+import json
+import pathlib
+import random
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from corrupted import TYPES, counted, precision_recall, true_loops
+from harm import FEW, SMALL, path_of
+from support import variants
+from support.experiment import ROOT, argument_parser
+from support.runs import Command, Results, read_csv, run_all
+
+SEED = 7  # of variants and of false loops
+EVERY = 12  # cells of all, so that it takes an hour
+ROOM = "slam/src/prune/consensus"
+PREFIX = "ISOTHERM_"
+NATS = 1.0
+
+
+@dataclasses.dataclass(frozen=True)
+class Constant:
+    file: str
+    name: str
+    value: str
+    meaning: str
+    tried: tuple  # text of C++ or a number a run
+
+
+CONSTANTS = [
+    Constant("objective/scale_prior.hpp", "kScaleDeviation", "2 ln 10",
+             "deviation of the log of a factor on covariances: ten in the error", (2.3, 9.2)),
+    Constant("objective/error_scales.cpp", "kPriorLoops", "1",
+             "of each kind of loop, before any is seen: a uniform share", (0.5, 4)),
+    Constant("objective/near_density.cpp", "kReach", "3.5",
+             "deviations to which a kernel of near pairs reaches", (2, 7)),
+    Constant("estimate/map_volume.cpp", "kLeastAspect", "0.05",
+             "thickness of a flat map, which false loops leave", (0.01, 0.3)),
+    Constant("judge.cpp", "kFewLoops", "5", "loops of which none is pruned if there are fewer",
+             (0, 20)),
+    Constant("judge.cpp", "kNegligible", "-20",
+             "log weight below which an explanation has no say", (-5, -100)),
+    Constant("climb/climb.cpp", "kBetter", "0.1", "nats by which a move must be better", (0.01, 1)),
+    Constant("climb/climb.cpp", "kTelling", "2e-3", "nats a loop for a lesson to matter",
+             (0, 2e-2)),
+    Constant("climb/climb.cpp", "kPatience", "8", "moves that may find nothing better", (3, 20)),
+    Constant("climb/climb.cpp", "kMoreTelling", "2", "times as many loops tell scales anew",
+             (1, 1000)),
+    Constant("climb/climb.cpp", "kOtherwise", "10",
+             "factor on the variance of loops that is tried in the end", (1, 100)),
+    Constant("climb/groups.cpp", "kMostExpectedFalse", "0.5",
+             "loops of a batch that may be expected false", (0.1, 5)),
+    Constant("climb/groups.cpp", "kFalseShare", "1e-3", "the same as a share of those in force",
+             (0, 1e-2)),
+    Constant("climb/groups.cpp", "kGrowth", "3", "times as many loops as before in a batch",
+             (1, 100)),
+    Constant("climb/learn.cpp", "kRepetitions", "10", "of expectation maximisation", (3, 30)),
+    Constant("climb/assessment.cpp", "kSameWeight", "0.05", "change of a log weight that matters",
+             (0.005, 0.5)),
+    Constant("climb/assessment.cpp", "kHopeless", "50",
+             "log odds against, by a bound, beyond which no covariance is solved for", (20, 200)),
+    Constant("estimate/estimate.cpp", "kSettled", "0.1",
+             "deviations below which a step of poses does not matter", (0.01, 1)),
+    Constant("pairs/near_pairs.cpp", "kMostPartners", "12", "partners that a loop is paired with",
+             (3, 50)),
+    Constant("objective/loop_gain.cpp", "kNodes", "4", "nodes to either side, for an integral",
+             (0, 8)),
+]
+STARTS = ["as stated", "odometry x 100", "loops x 0.01", "both x 0.01"]
+FLAGS = {"window 5": ["--window", 5], "window 80": ["--window", 80],
+         "scales as stated": ["--no-calibrate"]}
+
+
+def from_environment(text, constant):
+    """The source with the constant read when the program starts."""
+    pattern = rf"(inline )?constexpr ([\w:]+) {constant.name} = ([^;]+);"
+    code = (r"\1const \2 " + constant.name + r" = [] { const char* text = std::getenv(""" +
+            f'"{PREFIX}{constant.name}"' +
+            r"""); return text ? static_cast<\2>(std::strtod(text, nullptr)) : static_cast<\2>(\3); }();""")
+    changed, count = re.subn(pattern, code, text)
+    if count != 1:
+        raise RuntimeError(f"{constant.file} has no {constant.name}")
+    return changed.replace("#pragma once\n", "#pragma once\n#include <cstdlib>\n", 1) \
+        if constant.file.endswith(".hpp") else "#include <cstdlib>\n" + changed
+
+
+def instrument(tree):
+    for constant in CONSTANTS:
+        path = tree / ROOM / constant.file
+        path.write_text(from_environment(path.read_text("utf-8"), constant), "utf-8")
+    learn = tree / ROOM / "climb/learn.cpp"
+    learn.write_text(learn.read_text("utf-8").replace("constexpr double kMostOwn",
+                                                      "const double kMostOwn"), "utf-8")
+    starts = tree / ROOM / "climb/starts.hpp"
+    loop = "for (const auto& start : kStarts) {"
+    text = starts.read_text("utf-8")
+    if loop not in text:
+        raise RuntimeError("starts.hpp has another loop than expected")
+    skip = (f'{loop}\n    const char* without = std::getenv("{PREFIX}kStarts");\n'
+            "    if (without && &start - kStarts.data() == std::atoi(without)) continue;")
+    starts.write_text(text.replace(loop, skip).replace(
+        "#pragma once\n", "#pragma once\n#include <cstdlib>\n", 1), "utf-8")
+
+
+def build(folder):
+    """The command with its constants in the environment."""
+    tree = folder / "tree"
+    if not tree.exists():
+        files = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True,
+                               check=True).stdout.split("\0")
+        for name in filter(None, files):
+            (tree / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / name, tree / name)
+        instrument(tree)
+    subprocess.run([tree / "scripts/build.sh", "release"], check=True)
+    return tree / "build/release/apps/isotherm"
+
+
+def prepare(command, data, graph, variant, kind, cells):
+    """Writes the graph of a cell and its labels, once; how it went, as run_all() wants it."""
+    name = f"{graph}-{variant}-{kind}"
+    changed = variants.VARIANTS[variant](variants.read(path_of(graph, data)),
+                                         random.Random(f"{graph} {SEED}"))
+    if all(edge.is_odometry for edge in changed.edges):
+        return {"file": None}
+    with tempfile.TemporaryDirectory() as folder:
+        clean = pathlib.Path(folder) / "clean.g2o"
+        variants.write(changed, clean)
+        fraction = ["--fraction", 0.5, "--type", kind] if kind != "clean" else ["--count", 0]
+        command.run("corrupt", clean, "-o", cells / f"{name}.g2o", "--labels",
+                    cells / f"{name}.csv", "--seed", SEED, *fraction)
+    return {"file": str(cells / name)}
+
+
+class Changed(Command):
+    """The command with other constants."""
+
+    def __init__(self, path, environment):
+        super().__init__("env", 600)
+        self.words = [f"{PREFIX}{key}={value}" for key, value in environment.items()] + [str(path)]
+
+    def run(self, *arguments):
+        return super().run(*self.words, *arguments)
+
+
+def measure(command, flags, cells):
+    """All cells in one row."""
+    row = {"cells": 0, "right": 0, "true pruned": 0, "true ambiguous": 0, "false kept": 0,
+           "false ambiguous": 0, "seconds": 0.0, "evidence": []}
+    for cell in cells:
+        with tempfile.TemporaryDirectory() as folder:
+            work = pathlib.Path(folder)
+            usage = command.run("prune", cell + ".g2o", "--verdicts", work / "v.csv", "--json",
+                                work / "r.json", *flags)
+            counts = counted(read_csv(work / "v.csv"), read_csv(cell + ".csv"))
+            answer = json.loads((work / "r.json").read_text("utf-8"))
+        row["evidence"].append(answer["consensus"]["log_evidence"])
+        row["seconds"] += usage.ru_utime
+        for key in ("true pruned", "true ambiguous", "false kept", "false ambiguous"):
+            row[key] += counts[key]
+        if true_loops(counts) >= FEW:
+            row["cells"] += 1
+            row["right"] += min(precision_recall(counts)) >= 0.98
+    return row
+
+
+def page(base, rows, cell_count):
+    lines = ["# What constants are worth", "",
+             "Made by `benchmarks/ablation.py`: consensus with one constant changed at a time, on",
+             f"{cell_count} graphs that none was chosen on (variants and false loops drawn with "
+             f"seed {SEED},", "clean and with half of the loops false; every row is in",
+             "[data/ablation.csv](data/ablation.csv)). *Right*: cells with at least "
+             f"{FEW} true loops whose", "precision and recall of what is not pruned are both "
+             "≥ .98. *Evidence*: cells in which that of", f"the answer is higher and lower by more "
+             f"than {NATS:g} nat; where the model itself is changed it", "cannot be compared. "
+             "*Seconds*: CPU time against the first row's.", "",
+             f"As they are: {base['right']} of {base['cells']} cells right.", "",
+             "| constant | what it is | value | tried | right | true loops pruned | true ambiguous |"
+             " false kept | false ambiguous | evidence +/- | seconds |",
+             "|---|---|---|---|---|---|---|---|---|---|---|",
+             line_of("as they are", "", "", "", base, base, True)]
+    for constant in CONSTANTS:
+        model = constant.name in ("kScaleDeviation", "kPriorLoops", "kReach", "kLeastAspect",
+                                  "kNodes")
+        lines += [line_of(f"`{constant.name}`", constant.meaning, constant.value, f"{value:g}",
+                          rows[f"{constant.name}={value:g}"], base, not model)
+                  for value in constant.tried if f"{constant.name}={value:g}" in rows]
+    lines += [line_of("`kStarts`", "scales that climbs start from", "four", f"without {name}",
+                      rows[f"kStarts={k}"], base, True)
+              for k, name in enumerate(STARTS) if f"kStarts={k}" in rows]
+    lines += [line_of("option", "", "20" if "window" in name else "learnt", name, rows[name], base,
+                      False) for name in FLAGS if name in rows]
+    return "\n".join(lines) + "\n"
+
+
+def line_of(name, meaning, value, tried, row, base, comparable):
+    pairs = list(zip(row["evidence"], base["evidence"]))
+    higher = sum(a > b + NATS for a, b in pairs)
+    lower = sum(a < b - NATS for a, b in pairs)
+    evidence = f"{higher}/{lower}" if comparable else "–"
+    return (f"| {name} | {meaning} | {value} | {tried} | {row['right']} | {row['true pruned']} | "
+            f"{row['true ambiguous']} | {row['false kept']} | {row['false ambiguous']} | {evidence} "
+            f"| {row['seconds'] / base['seconds']:.2f} |")
+
+
+def main():
+    parser = argument_parser(__doc__)
+    parser.add_argument("--isotherm", help="a command built by this script before")
+    parser.add_argument("--every", type=int, default=EVERY, help="take every so many cells")
+    options = parser.parse_args()
+    folder = ROOT / "build" / "ablation"
+    cells = folder / "cells"
+    cells.mkdir(parents=True, exist_ok=True)
+    program = options.isotherm or build(folder)
+    known = Results(folder / "prepared")
+    kinds = [(graph, variant, kind) for graph in SMALL for variant in variants.VARIANTS
+             for kind in ("clean", *TYPES)][::options.every]
+    tasks = {"-".join(kind): functools.partial(prepare, Command(program), pathlib.Path(options.data),
+                                               *kind, cells) for kind in kinds}
+    run_all(tasks, known, options.jobs)
+    files = [row["file"] for row in map(known.get, tasks) if row["file"]]
+    runs = {"base": ({}, [])}
+    runs |= {f"{constant.name}={value:g}": ({constant.name: value}, [])
+             for constant in CONSTANTS for value in constant.tried}
+    runs |= {f"kStarts={k}": ({"kStarts": k}, []) for k in range(len(STARTS))}
+    runs |= {name: ({}, flags) for name, flags in FLAGS.items()}
+    results = Results(folder / "runs")
+    if not options.page_only:
+        run_all({name: functools.partial(measure, Changed(program, environment), flags, files)
+                 for name, (environment, flags) in runs.items()}, results, options.jobs)
+    rows = {name: results.get(name) for name in runs}
+    rows = {name: row for name, row in rows.items() if row and "cells" in row}
+    target = ROOT / "docs" / "results"
+    with open(target / "data" / "ablation.csv", "w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        columns = [key for key in rows["base"] if key != "evidence"]
+        writer.writerow(["run", *columns])
+        writer.writerows([name, *(row[key] for key in columns)] for name, row in rows.items())
+    (target / "ablation.md").write_text(page(rows["base"], rows, len(files)), encoding="utf-8")
+    print(f"ablation: wrote {target / 'ablation.md'}", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main()
