@@ -17,10 +17,10 @@
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm/slam/io/pose_graph_stream.hpp"
 #include "isotherm/slam/online/online_consensus.hpp"
-#include "isotherm/spectral/edges/verdict_file.hpp"
 #include "option_verb.hpp"
 #include "verbs/follow/event_lines.hpp"
 #include "verbs/follow/state_file.hpp"
+#include "verbs/prune/prune_result.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {
@@ -112,15 +112,11 @@ class FollowVerb::Session {
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     const auto decided = online_.verdicts();
     events_.end(decided, edges_);
+    const auto graph = online_.graph();
     if (!verb_.output.empty()) {
-      write_g2o(verb_.output, apply_verdicts(online_.graph(), decided, verb_.keep_ambiguous));
+      write_g2o(verb_.output, apply_verdicts(graph, decided, verb_.keep_ambiguous));
     }
-    if (!verb_.verdicts.empty()) {
-      const auto lettered = [](const auto& row) { return !robot_letter(row.from).empty(); };
-      spectral::write_verdicts(
-          verb_.verdicts, decided,
-          std::ranges::any_of(decided, lettered) ? vertex_name : spectral::VertexNames());
-    }
+    if (!verb_.verdicts.empty()) write_loop_verdicts(verb_.verdicts, decided, graph.ids);
     summarise(decided, took.count());
   }
 

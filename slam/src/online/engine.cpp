@@ -18,7 +18,7 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 // Searches from every start begin where one of the loops can be pruned, and then whenever there are
 // four times as many, so that all of them together take little longer than the last. That is done
 // by the time that there are a quarter more edges; of so few loops, as soon as it can be.
-constexpr Index kFirst = detail::kFewLoops;
+constexpr Index kFirst = kFewLoops;
 constexpr Index kGrowth = 4;
 constexpr double kUntil = 0.25;
 constexpr Index kFew = 32;
@@ -125,8 +125,8 @@ typename OnlineEngine<Pose>::Search OnlineEngine<Pose>::begin(bool everywhere) c
   for (const auto& other : {map_, rival_}) {
     if (other) search.from.push_back(other);
   }
-  search.task = std::make_unique<detail::PacedTask>(
-      [map = search.map.get(), from = search.from, everywhere](const detail::Pace& pace) {
+  search.task = std::make_unique<PacedTask>(
+      [map = search.map.get(), from = search.from, everywhere](const Pace& pace) {
         std::vector<const Snapshot<Pose>*> others;
         for (const auto& other : from) others.push_back(other.get());
         map->explain(others, everywhere, pace);
@@ -162,7 +162,7 @@ void OnlineEngine<Pose>::take_over(const PruneResult& result) {
   const auto& details = result.consensus.details;
   for (std::size_t k = 0; k < result.verdicts.size(); ++k) {
     const double chi2 = details.empty() ? 0.0 : details[k].chi2;
-    set(result.verdicts[k], detail::reason_of(result.verdicts[k], chi2));
+    set(result.verdicts[k], reason_of(result.verdicts[k], chi2));
   }
 }
 
@@ -186,16 +186,16 @@ void OnlineEngine<Pose>::judge(Index number) {
   } else if (outlook_) {
     const auto standing = outlook_->standing(number);
     const bool accepted = standing.connected() && standing.log_odds > 0.0;
-    const bool many = static_cast<std::size_t>(loops_) >= detail::kFewLoops;
+    const bool many = static_cast<std::size_t>(loops_) >= kFewLoops;
     chi2 = standing.chi2;
     row.score = -standing.log_odds;
-    row.threshold = detail::log_odds_of(1.0 - options_.consensus.significance);
-    row.verdict = detail::verdict_of(accepted, standing.log_odds, row.threshold,
-                                     many && standing.connected());
+    row.threshold = log_odds_of(1.0 - options_.consensus.significance);
+    row.verdict =
+        verdict_of(accepted, standing.log_odds, row.threshold, many && standing.connected());
     row.probability = 1.0 / (1.0 + std::exp(-standing.log_odds));
-    row.stage = detail::stage_of(accepted, standing.connected());
+    row.stage = stage_of(accepted, standing.connected());
   }
-  auto reason = detail::reason_of(row, chi2);
+  auto reason = reason_of(row, chi2);
   set(std::move(row), std::move(reason));
 }
 

@@ -47,7 +47,7 @@ class OnlineEngine {
   struct Search {
     std::shared_ptr<Snapshot<Pose>> map;
     std::vector<std::shared_ptr<const Snapshot<Pose>>> from;
-    std::unique_ptr<detail::PacedTask> task;
+    std::unique_ptr<PacedTask> task;
   };
 
   /// The verdict on an edge, unless it is a step.
