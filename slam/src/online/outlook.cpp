@@ -11,13 +11,13 @@
 #include "prune/consensus/estimate/log_normal.hpp"
 #include "prune/consensus/objective/loop_gain.hpp"
 #include "prune/consensus/objective/own_frames.hpp"
+#include "prune/consensus/pairs/loop_pair.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
 
 // Loops before a new one among which it can be a copy of one.
 constexpr Index kRecent = 64;
-constexpr double kSame = 1e-9;  // of two measurements
 
 template <class Pose>
 typename Pose::Matrix scaled(const typename Pose::Matrix& covariance,
@@ -148,7 +148,7 @@ double Outlook<Pose>::log_alternative(Index edge, const Place& a, const Place& b
   if (is_copied(edge)) {
     const double log_sigma =
         log_determinant(Eigen::LLT<Matrix>(Sigma)) + Pose::kDof * std::log(scale);
-    return -0.5 * (log_sigma + Pose::kDof * kLog2Pi) - Pose::kDof;
+    return log_copy_density<Pose>(log_sigma);
   }
   const Index apart = std::abs((a.position + a.steps) - (b.position + b.steps));
   const std::size_t group = a.chain == b.chain ? span_class(apart) : kSpanClasses;
@@ -162,7 +162,6 @@ template <class Pose>
 bool Outlook<Pose>::is_copied(Index edge) const {
   const auto apart = [](VertexId a, VertexId b) { return a > b ? a - b : b - a; };
   const auto& own = log_.edges()[edge];
-  if (own.measured.T_from_to.log().norm() < kSame) return false;
   Index seen = 0;
   for (Index k = edge - 1; k >= 0 && seen < kRecent; --k) {
     const auto& other = log_.edges()[k];
@@ -170,8 +169,7 @@ bool Outlook<Pose>::is_copied(Index edge) const {
     ++seen;
     const auto window = static_cast<VertexId>(window_);
     if (apart(other.from, own.from) > window || apart(other.to, own.to) > window) continue;
-    const Pose difference = other.measured.T_from_to.inverse() * own.measured.T_from_to;
-    if (difference.log().norm() < kSame) return true;
+    if (measure_the_same(own.measured.T_from_to, other.measured.T_from_to)) return true;
   }
   return false;
 }

@@ -21,4 +21,11 @@ double log_normal(const typename Pose::Tangent& r, const typename Pose::Matrix& 
   return -0.5 * (r.dot(factor.solve(r)) + log_determinant(factor) + Pose::kDof * kLog2Pi);
 }
 
+/// log of the density that a copied measurement is held against: a normal one's, of this
+/// log |Sigma|, at twice the squared length that is expected of its error.
+template <class Pose>
+double log_copy_density(double log_sigma) {
+  return -0.5 * (log_sigma + Pose::kDof * kLog2Pi) - Pose::kDof;
+}
+
 }  // namespace isotherm::slam::detail

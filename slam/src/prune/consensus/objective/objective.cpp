@@ -42,8 +42,7 @@ double Objective<Pose>::log_alternative(Index loop, const NearByClass& near, dou
     return near[proposal_class(stated_.reduced, loop)] +
            near_.log_false_density(loop, loop_scale * shape);
   }
-  const double log_sigma = log_sigma_[loop] + Pose::kDof * std::log(loop_scale);
-  return -0.5 * (log_sigma + Pose::kDof * kLog2Pi) - Pose::kDof;
+  return log_copy_density<Pose>(log_sigma_[loop] + Pose::kDof * std::log(loop_scale));
 }
 
 // Log densities of the accepted loops at the peak, and of their scales.

@@ -34,8 +34,8 @@ std::vector<ForwardLoop<Pose>> forward_loops(const ReducedGraph<Pose>& graph,
 }
 
 template <class Pose>
-bool is_copy(const Link<Pose>& a, const Link<Pose>& b) {
-  return (a.T_a_b.inverse() * b.T_a_b).log().norm() < kSame && a.T_a_b.log().norm() >= kSame;
+bool measure_the_same(const Pose& a, const Pose& b) {
+  return (a.inverse() * b).log().norm() < kSame && a.log().norm() >= kSame;
 }
 
 template <class Pose>
@@ -54,8 +54,8 @@ template std::vector<ForwardLoop<Pose2>> forward_loops(const ReducedGraph<Pose2>
                                                        const CovarianceScale&);
 template std::vector<ForwardLoop<Pose3>> forward_loops(const ReducedGraph<Pose3>&,
                                                        const CovarianceScale&);
-template bool is_copy(const Link<Pose2>&, const Link<Pose2>&);
-template bool is_copy(const Link<Pose3>&, const Link<Pose3>&);
+template bool measure_the_same(const Pose2&, const Pose2&);
+template bool measure_the_same(const Pose3&, const Pose3&);
 template PairResidual<Pose2> pair_residual(const ReducedGraph<Pose2>&, const CovarianceScale&,
                                            const ForwardLoop<Pose2>&, const ForwardLoop<Pose2>&);
 template PairResidual<Pose3> pair_residual(const ReducedGraph<Pose3>&, const CovarianceScale&,

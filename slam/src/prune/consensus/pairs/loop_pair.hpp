@@ -20,11 +20,17 @@ template <class Pose>
 std::vector<ForwardLoop<Pose>> forward_loops(const ReducedGraph<Pose>& graph,
                                              const CovarianceScale& scale);
 
-/// Whether one loop repeats the measurement of the other. No two measurements are the same
+/// Whether one measurement of a relative pose repeats the other. No two measurements are the same
 /// to the last digit: a copy vouches for nothing, and says nothing of how accurate either
 /// is. Only that the robot is back where it was is said the same way by each.
 template <class Pose>
-bool is_copy(const Link<Pose>& a, const Link<Pose>& b);
+bool measure_the_same(const Pose& a, const Pose& b);
+
+/// Whether one loop is a copy of the other.
+template <class Pose>
+bool is_copy(const Link<Pose>& a, const Link<Pose>& b) {
+  return measure_the_same(a.T_a_b, b.T_a_b);
+}
 
 /// A loop's residual under another one, and its covariance.
 template <class Pose>
