@@ -95,11 +95,11 @@ typename Snapshot<Pose>::Standpoint Snapshot<Pose>::carry(const Snapshot& other)
     const auto j = static_cast<std::size_t>(at - other.roles_.candidates.begin());
     now.accepted.push_back(old && before.accepted[j]);
     now.weights.push_back(old ? before.weights[j] : 1.0);
+    found.held.push_back(old ? known.held[j] : 0.0);
     found.covariances.push_back(
         old ? known.covariances[j]
             : (found.graph->reduced.odometry_covariance[k] * before.scale.odometry).eval());
   }
-  found.held = now.accepted;
   carry_layout(other, now.layout);
   return {std::move(now), std::move(found)};
 }

@@ -18,9 +18,10 @@ using detail::Explanation;
 // Nothing accepted, and what the climbs found; the best first.
 template <class Pose>
 std::vector<Explanation<Pose>> explanations(detail::Climb<Pose>& climb, bool calibrate) {
-  std::vector<Explanation<Pose>> found = {climb.nothing()};
+  std::vector<Explanation<Pose>> found;
   detail::climb_from_each_start(calibrate,
                                 [&](const auto& start) { found.push_back(climb.from(start)); });
+  found.push_back(climb.nothing());
   std::ranges::stable_sort(found, std::greater{}, &Explanation<Pose>::evidence);
   return found;
 }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "isotherm/base/statistics.hpp"
 #include "prune/consensus/objective/loop_gain.hpp"
 
 namespace isotherm::slam::detail {
@@ -46,12 +45,14 @@ void Assessment<Pose>::restore(const Explanation<Pose>& before, Findings found) 
 }
 
 template <class Pose>
-void Assessment<Pose>::assess(Explanation<Pose>& now) {
+bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   rescale(now.shapes);
   found_.mixture = expected_mixture(now.scale.loops, now.shares);
   find_peak(now);
   if (!nearness_held_) found_.near = objective_.near(estimate_.poses());
-  bound(now);
+  now.redundancy = {};  // the more there is, the narrower is the peak
+  if (evidence(now) < least) return false;
+  predict(now);
   weigh(now);
   add_prior(now);
   now.layout = estimate_.layout();
@@ -59,7 +60,13 @@ void Assessment<Pose>::assess(Explanation<Pose>& now) {
     const auto links = static_cast<double>(graph().steps.size() + graph().loops.size());
     pace_(kCovarianceWork * links + (nearness_held_ ? 0.0 : kNearnessWork));
   }
-  now.evidence = objective_.evidence(now, *found_.graph, estimate_, found_.near);
+  now.evidence = evidence(now);
+  return true;
+}
+
+template <class Pose>
+double Assessment<Pose>::evidence(const Explanation<Pose>& now) const {
+  return objective_.evidence(now, *found_.graph, estimate_, found_.near);
 }
 
 template <class Pose>
@@ -68,32 +75,32 @@ void Assessment<Pose>::rescale(const Shapes<Pose>& shapes) {
   found_.graph = std::make_shared<ScaledGraph<Pose>>(objective_.scaled(shapes));
   found_.shapes = shapes;
   estimate_.use(found_.graph->reduced);
-  found_.held.clear();
 }
 
 template <class Pose>
 void Assessment<Pose>::find_peak(Explanation<Pose>& now) {
   weigh_new(now);
   estimate_.weigh_loops(now.weights);
-  estimate_.settle(now.accepted, now.scale, kMostSteps, [&] { return reweigh(now); });
+  const auto weigh_again = [&] { return reweigh(now); };
+  estimate_.settle(now.accepted, now.scale, kMostSteps, weigh_again, kSameWeight);
 }
 
 // Loops accepted since the last assessment, by what the others said of them.
 template <class Pose>
 void Assessment<Pose>::weigh_new(Explanation<Pose>& now) {
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
-    if (!now.accepted[k] || found_.held.empty() || found_.held[k]) continue;
+    if (!now.accepted[k] || found_.held.empty() || found_.held[k] > 0.0) continue;
     const auto& link = graph().loops[k];
     const auto prediction =
-        predict<Pose>(estimate_.residual(link), found_.covariances[k], link.covariance);
+        detail::predict<Pose>(estimate_.residual(link), found_.covariances[k], link.covariance);
     now.weights[k] = loop_gain<Pose>(prediction, found_.mixture).weight;
   }
 }
 
-// Whether any weight changed.
+// By how much the log of a weight changed at most.
 template <class Pose>
-bool Assessment<Pose>::reweigh(Explanation<Pose>& now) {
-  bool changed = false;
+double Assessment<Pose>::reweigh(Explanation<Pose>& now) {
+  double most = 0.0;
   now.found = {};
   now.scale_evidence = 0.0;
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
@@ -103,62 +110,82 @@ bool Assessment<Pose>::reweigh(Explanation<Pose>& now) {
     const double chi2 =
         r.dot(link.information * r) / now.scale.loops + uncertainty(now, static_cast<Index>(k));
     const ErrorScale scale = error_scale(found_.mixture, chi2, Pose::kDof);
-    changed = changed || std::abs(std::log(scale.weight / now.weights[k])) > kSameWeight;
+    most = std::max(most, std::abs(std::log(scale.weight / now.weights[k])));
     now.weights[k] = scale.weight;
     now.scale_evidence += scale.evidence;
     for (std::size_t j = 0; j < kScaleCount; ++j) now.found.loops[j] += scale.probability[j];
   }
   estimate_.weigh_loops(now.weights);
-  return changed;
+  return most;
 }
 
-// What is expected of the squared length of the error beyond that at the peak, in
-// deviations. As of the last assessment; of a loop accepted since, from what the others said.
+// What is expected of the squared length of the error beyond that at the peak, in deviations: P is
+// its covariance with the loop's information times `held` (0 where it is new); now it is times q.
 template <class Pose>
 double Assessment<Pose>::uncertainty(const Explanation<Pose>& now, Index loop) const {
   const auto& link = graph().loops[loop];
   const auto J = residual_jacobian<Pose>(estimate_.residual(link));
-  const Matrix P = J * found_.covariances[loop] * J.transpose();
-  if (!found_.held.empty() && found_.held[loop]) {
-    return (link.information * P).trace() / now.scale.loops;
-  }
-  const double weight = now.weights[loop];
-  const Matrix own = link.covariance * now.scale.loops / weight;
-  return Eigen::LLT<Matrix>(own + P).solve(P).trace() / weight;
+  const Matrix P = link.information * (J * found_.covariances[loop] * J.transpose());
+  const double held = found_.held.empty() ? 0.0 : found_.held[loop];
+  const double more = now.weights[loop] / now.scale.loops - held;
+  const double most = Pose::kDof / now.weights[loop];  // where nothing else is known
+  if (more == 0.0) return std::min(P.trace() / now.scale.loops, most);
+  const Matrix share = (Matrix::Identity() + more * P).partialPivLu().solve(P);
+  const double left = share.trace() / now.scale.loops;
+  return left >= 0.0 ? std::min(left, most) : most;
 }
 
-// Accepting loops only ever sharpens predictions, so that a covariance with fewer of them at the
-// same scale is an upper bound; that of odometry alone always is.
+// Accepting loops only ever sharpens predictions, so that covariances with fewer of them at the
+// same scale are upper bounds.
 template <class Pose>
-void Assessment<Pose>::bound(const Explanation<Pose>& now) {
-  bool still = !found_.held.empty() && found_.held_scale == now.scale.odometry;
-  for (std::size_t k = 0; still && k < now.accepted.size(); ++k) {
-    still = now.accepted[k] || !found_.held[k];
+bool Assessment<Pose>::bounds(const Explanation<Pose>& now) const {
+  if (found_.held.empty() || found_.held_scale != now.scale.odometry) return false;
+  for (std::size_t k = 0; k < now.accepted.size(); ++k) {
+    if (found_.held[k] > 0.0 && !now.accepted[k]) return false;
   }
-  for (std::size_t k = 0; !still && k < found_.covariances.size(); ++k) {
+  return true;
+}
+
+// Covariances of the loops whose ends are joined. Where nothing is accepted and odometry does not
+// meet itself they have been composed already; those of loops that were hopeless, and are under the
+// best within their bound, stay.
+template <class Pose>
+void Assessment<Pose>::predict(Explanation<Pose>& now) {
+  const bool alone = std::ranges::count(now.accepted, true) == 0 && found_.graph->is_forest();
+  const bool bounded = bounds(now) && !now.standings.empty();
+  now.standings.resize(now.accepted.size());
+  std::vector<Index> solved;
+  for (std::size_t k = 0; k < now.accepted.size(); ++k) {
+    const auto loop = static_cast<Index>(k);
+    Standing& standing = now.standings[k];
+    if (bounded && !now.accepted[k] && standing.connected() && standing.evidence < -kHopeless) {
+      standing = other_standing(now, loop, true);
+      if (standing.evidence < -kHopeless) continue;
+    }
+    const auto [first, second] = estimate_.parts(graph().loops[k]);
+    if (!alone && first == second) solved.push_back(loop);
     found_.covariances[k] = graph().odometry_covariance[k] * now.scale.odometry;
+    standing.evidence = 0.0;
   }
-  found_.held = now.accepted;
+  const auto covariances = estimate_.relative_covariances(solved);
+  for (std::size_t i = 0; i < solved.size(); ++i) found_.covariances[solved[i]] = covariances[i];
+  found_.held.assign(now.accepted.size(), 0.0);
+  for (std::size_t k = 0; k < now.accepted.size(); ++k) {
+    if (now.accepted[k]) found_.held[k] = now.weights[k] / now.scale.loops;
+  }
   found_.held_scale = now.scale.odometry;
 }
 
-// Of those that are hopeless even under the best covariance within their bound it is not solved
-// for.
 template <class Pose>
 void Assessment<Pose>::weigh(Explanation<Pose>& now) {
-  now.standings.resize(now.accepted.size());
-  std::vector<Index> loops;
+  find_redundancy(now);
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
     const auto loop = static_cast<Index>(k);
-    if (!now.accepted[k]) now.standings[k] = other_standing(now, loop, false);
-    const bool hopeful = now.standings[k].connected() && now.standings[k].evidence > -kHopeless;
-    if (now.accepted[k] || hopeful) loops.push_back(loop);
-  }
-  const auto covariances = estimate_.relative_covariances(loops);
-  for (std::size_t i = 0; i < loops.size(); ++i) found_.covariances[loops[i]] = covariances[i];
-  find_redundancy(now);
-  for (const Index k : loops) {
-    now.standings[k] = now.accepted[k] ? accepted_standing(now, k) : other_standing(now, k, true);
+    if (now.accepted[k]) {
+      now.standings[k] = accepted_standing(now, loop);
+    } else if (now.standings[k].evidence >= -kHopeless) {
+      now.standings[k] = other_standing(now, loop, false);
+    }
   }
 }
 
@@ -203,14 +230,14 @@ Standing Assessment<Pose>::accepted_standing(const Explanation<Pose>& now, Index
 
 template <class Pose>
 Standing Assessment<Pose>::other_standing(const Explanation<Pose>& now, Index loop,
-                                          bool solved) const {
+                                          bool best) const {
   const auto& link = graph().loops[loop];
   Standing standing{.parts = estimate_.parts(link)};
   double density = -objective_.log_volume();
   if (standing.connected()) {
     auto prediction =
-        predict<Pose>(estimate_.residual(link), found_.covariances[loop], link.covariance);
-    if (!solved) prediction = at_best<Pose>(prediction, found_.mixture.scale);
+        detail::predict<Pose>(estimate_.residual(link), found_.covariances[loop], link.covariance);
+    if (best) prediction = at_best<Pose>(prediction, found_.mixture.scale);
     const auto gain =
         loop_gain<Pose>(prediction, found_.mixture, objective_.scale_deviation(now.redundancy));
     standing.chi2 = gain.chi2;

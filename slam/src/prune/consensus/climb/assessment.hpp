@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -25,9 +26,10 @@ class Assessment {
   /// changes slowly, and takes longest on small graphs.
   void hold_nearness(bool held) { nearness_held_ = held; }
 
-  /// Sets the weights, the layout and the evidence of `now`.
+  /// Sets the weights, the layout and the evidence of `now`, or gives up where that cannot reach
+  /// `least`: whether it went to the end.
   /// @throws NumericalError if the normal equations break down
-  void assess(Explanation<Pose>& now);
+  bool assess(Explanation<Pose>& now, double least = -std::numeric_limits<double>::infinity());
 
   /// What the next assessment starts from, beside the explanation.
   struct Findings {
@@ -36,8 +38,9 @@ class Assessment {
     ScaleMixture mixture;
     typename Objective<Pose>::NearByClass near{};
     std::vector<Matrix> covariances;  // of T_a^-1 T_b, one a loop; with it where it is accepted
-    std::vector<bool> held;           // loops that the covariances are given, for
-    double held_scale = 0.0;          // of odometry
+    // Factors on the information of the loops that the covariances are given; none where empty.
+    std::vector<double> held;
+    double held_scale = 0.0;  // of odometry
   };
   const Findings& findings() const noexcept { return found_; }
 
@@ -60,14 +63,16 @@ class Assessment {
  private:
   void rescale(const Shapes<Pose>& shapes);
   void find_peak(Explanation<Pose>& now);
-  bool reweigh(Explanation<Pose>& now);
+  double evidence(const Explanation<Pose>& now) const;
+  double reweigh(Explanation<Pose>& now);
   double uncertainty(const Explanation<Pose>& now, Index loop) const;
   void weigh_new(Explanation<Pose>& now);
-  void bound(const Explanation<Pose>& now);
+  bool bounds(const Explanation<Pose>& now) const;
+  void predict(Explanation<Pose>& now);
   void weigh(Explanation<Pose>& now);
   void find_redundancy(Explanation<Pose>& now) const;
   Standing accepted_standing(const Explanation<Pose>& now, Index loop) const;
-  Standing other_standing(const Explanation<Pose>& now, Index loop, bool solved) const;
+  Standing other_standing(const Explanation<Pose>& now, Index loop, bool best) const;
   void add_prior(Explanation<Pose>& now) const;
 
   const Objective<Pose>& objective_;

@@ -45,10 +45,18 @@ Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
     before = best_.evidence;
     std::fill(dropped_.begin(), dropped_.end(), false);
     const Explanation<Pose>* known = grow();
-    if (known != nullptr && known->evidence >= best_.evidence) return *known;
+    if (known != nullptr && known->evidence >= best_.evidence) return lead_to(*known);
   } while (best_.evidence > before + kBetter);
   peaks_.push_back(best_);
   return best_;
+}
+
+template <class Pose>
+const Explanation<Pose>& Climb<Pose>::lead_to(const Explanation<Pose>& peak) {
+  for (Passed& passed : passed_) {
+    if (passed.peak == peaks_.size()) passed.peak = static_cast<std::size_t>(&peak - peaks_.data());
+  }
+  return peak;
 }
 
 template <class Pose>
@@ -99,14 +107,17 @@ Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
 
 template <class Pose>
 Explanation<Pose> Climb<Pose>::nothing() {
-  start({});
-  return now_;
+  if (!nothing_) start({});
+  return *nothing_;
 }
 
-// That of an earlier climb which holds all loops of this one and explains them better, by scales
-// too where they were `learnt` from them.
+// That of an earlier climb which passed here, which explains the same loops better, or which holds
+// all loops of this one and explains them better, by scales too where they were `learnt` from them.
 template <class Pose>
 const Explanation<Pose>* Climb<Pose>::peak_ahead(bool learnt) {
+  for (const Passed& passed : passed_) {
+    if (passed.peak != peaks_.size() && is_here(passed)) return &peaks_[passed.peak];
+  }
   for (const auto& peak : peaks_) {
     if (now_.accepted == peak.accepted) {
       if (!outdoes(peak)) return &peak;
@@ -115,6 +126,13 @@ const Explanation<Pose>* Climb<Pose>::peak_ahead(bool learnt) {
     }
   }
   return nullptr;
+}
+
+// The same loops at about the same scales, and not better.
+template <class Pose>
+bool Climb<Pose>::is_here(const Passed& passed) const {
+  return now_.accepted == passed.accepted && now_.evidence <= passed.evidence + kBetter &&
+         about_the_same(now_.scale, passed.scale);
 }
 
 // Whether the scales that can be learnt from here explain the same loops better.
@@ -143,6 +161,7 @@ void Climb<Pose>::start(const CovarianceScale& scale) {
   learnt_from_ = 0;
   assessment_.start_over();
   assessment_.assess(now_);
+  if (scale == CovarianceScale{}) nothing_ = now_;
   predict_runs();
   best_ = now_;
 }
@@ -211,11 +230,14 @@ std::size_t Climb<Pose>::accepted_count() const {
   return static_cast<std::size_t>(std::ranges::count(now_.accepted, true));
 }
 
+// Whether the evidence reaches `least`.
 template <class Pose>
-void Climb<Pose>::assess() {
-  assessment_.assess(now_);
+bool Climb<Pose>::assess(double least) {
+  if (!assessment_.assess(now_, least) || now_.evidence < least) return false;
   failed_ = {};
   if (now_.evidence > best_.evidence) best_ = now_;
+  passed_.push_back({now_.accepted, now_.scale, now_.evidence, peaks_.size()});
+  return true;
 }
 
 // Of the accepted loops that lower the evidence the worse half, and all that are at least half as
@@ -302,8 +324,7 @@ bool Climb<Pose>::try_scales(const CovarianceScale& scale, const Shapes<Pose>& s
   now_.shares = shares;
   bool better = false;
   try {
-    assess();
-    better = now_.evidence > before.evidence + kBetter;
+    better = assess(before.evidence + kBetter);
   } catch (const NumericalError&) {
     better = false;
   }

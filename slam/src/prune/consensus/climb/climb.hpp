@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "isotherm/slam/prune/consensus.hpp"
@@ -53,14 +55,24 @@ class Climb {
  private:
   enum Trial { lesson, lesson_of_scales, wider_loops, sharper_loops };
 
+  // Where a climb was, and the number of the peak that it led to; of this one that of the next.
+  struct Passed {
+    std::vector<bool> accepted;
+    CovarianceScale scale;
+    double evidence;
+    std::size_t peak;
+  };
+
   void start(const CovarianceScale& scale);
   const Explanation<Pose>* peak_ahead(bool learnt);
+  const Explanation<Pose>& lead_to(const Explanation<Pose>& peak);
+  bool is_here(const Passed& passed) const;
   bool outdoes(const Explanation<Pose>& peak);
   double summit() const;
   const Explanation<Pose>* grow();
   bool move();
   bool shift();
-  void assess();
+  bool assess(double least = -std::numeric_limits<double>::infinity());
   std::size_t accepted_count() const;
   Selection misfits() const;
   double gain_of_dropping(const Selection& loops) const;
@@ -81,10 +93,12 @@ class Climb {
   Assessment<Pose> assessment_;
   Explanation<Pose> now_;
   Explanation<Pose> best_;
+  std::optional<Explanation<Pose>> nothing_;
   std::vector<double> run_density_;       // log p(z | the loop before in its run)
   std::vector<Explanation<Pose>> peaks_;  // of earlier climbs
-  std::vector<bool> dropped_;             // since the climb last rose; not tried again
-  std::size_t learnt_from_ = 0;           // loops, at the last lesson
+  std::vector<Passed> passed_;
+  std::vector<bool> dropped_;     // since the climb last rose; not tried again
+  std::size_t learnt_from_ = 0;   // loops, at the last lesson
   std::array<bool, 4> failed_{};  // trials of other scales here; not repeated until a change
   std::vector<ConsensusMove> moves_;
   bool settled_ = true;

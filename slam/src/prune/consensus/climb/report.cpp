@@ -22,8 +22,7 @@ std::vector<double> mean_log_odds(const std::vector<Explanation<Pose>>& found) {
   for (auto at = found.begin(); at != found.end(); ++at) {
     const double log_weight = at->evidence - found.front().evidence;
     const bool same = std::any_of(found.begin(), at, [&](const auto& better) {
-      return better.accepted == at->accepted &&
-             std::abs(std::log(better.scale.odometry / at->scale.odometry)) < 1.0;
+      return better.accepted == at->accepted && about_the_same(better.scale, at->scale);
     });
     if (same || log_weight < kNegligible) continue;
     for (std::size_t k = 0; k < log_true.size(); ++k) {

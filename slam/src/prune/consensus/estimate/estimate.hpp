@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <span>
@@ -19,6 +20,12 @@ struct CovarianceScale {
   double odometry = 1.0;
   double loops = 1.0;
 };
+
+/// Whether both factors are, to within that of e.
+inline bool about_the_same(const CovarianceScale& a, const CovarianceScale& b) {
+  return std::abs(std::log(a.odometry / b.odometry)) < 1.0 &&
+         std::abs(std::log(a.loops / b.loops)) < 1.0;
+}
 
 /// The poses of a reduced graph given odometry and the accepted loops, and the
 /// factor of the normal equations there, from which covariances are read.
@@ -42,9 +49,9 @@ class Estimate {
   void update(const std::vector<bool>& accepted, const CovarianceScale& scale, int max_steps);
 
   /// The same, until weights settle too: whenever poses have, `reweigh` may call weigh_loops(),
-  /// and says whether any weight changed.
+  /// and says by how much the log of any changed at most; no more than `same` does not matter.
   void settle(const std::vector<bool>& accepted, const CovarianceScale& scale, int max_steps,
-              const std::function<bool()>& reweigh);
+              const std::function<double()>& reweigh, double same);
 
   /// From the next step on the information of each loop is multiplied by its entry, if any.
   void weigh_loops(std::vector<double> weights) { weights_ = std::move(weights); }
@@ -91,7 +98,7 @@ class Estimate {
  private:
   void lay_out(const std::vector<bool>& accepted);
   void linearize(const CovarianceScale& scale);
-  bool step();
+  double step();
   PoseGraph<Pose> used_links(const std::vector<bool>& accepted);
   void join_components(const PoseGraph<Pose>& used);
 

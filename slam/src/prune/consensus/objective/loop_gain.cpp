@@ -1,10 +1,9 @@
 #include "prune/consensus/objective/loop_gain.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
-#include <vector>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -23,30 +22,37 @@ constexpr double kNoDeviation = 0.1;
 constexpr int kNodes = 4;  // on either side
 constexpr double kNodeStep = 0.7;
 
-struct Factor {
-  double value = 1.0;
-  double log_weight = 0.0;
+using Nodes = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, 2 * kNodes + 1, 1>;
+
+struct Factors {
+  Nodes value;
+  Nodes log_weight;
 };
 
-std::vector<Factor> factors(double deviation) {
+Factors factors(double deviation) {
   const int nodes = deviation < kNoDeviation ? 0 : kNodes;
-  double sum = 0.0;
-  std::vector<Factor> result;
-  for (int i = -nodes; i <= nodes; ++i) {
-    const double x = kNodeStep * i;
-    result.push_back({std::exp(deviation * x), -0.5 * x * x});
-    sum += std::exp(-0.5 * x * x);
-  }
-  for (Factor& factor : result) factor.log_weight -= std::log(sum);
-  return result;
+  const Nodes x = Nodes::LinSpaced(2 * nodes + 1, -kNodeStep * nodes, kNodeStep * nodes);
+  const Nodes log_density = -0.5 * x.square();
+  return {(deviation * x).exp(), log_density - std::log(log_density.exp().sum())};
 }
 
-// log N(r; variance + own) but for a constant.
+double log_sum_of(const Nodes& logs) {
+  const double most = logs.maxCoeff();
+  return most + std::log((logs - most).exp().sum());
+}
+
+// log N(r; variance + own) but for a constant, of each own.
 template <class Pose>
-double log_fit(const typename Pose::Tangent& r, const typename Pose::Tangent& variance,
-               double own) {
-  const typename Pose::Tangent S = variance.array() + own;
-  return -0.5 * (S.array().log().sum() + (r.array().square() / S.array()).sum());
+Nodes log_fit(const typename Pose::Tangent& r, const typename Pose::Tangent& variance,
+              const Nodes& own) {
+  Nodes determinant = Nodes::Ones(own.size());
+  Nodes chi2 = Nodes::Zero(own.size());
+  for (int d = 0; d < Pose::kDof; ++d) {
+    const Nodes S = variance[d] + own;
+    determinant *= S;
+    chi2 += r[d] * r[d] / S;
+  }
+  return -0.5 * (determinant.log() + chi2);
 }
 
 }  // namespace
@@ -89,20 +95,19 @@ template <class Pose>
 LoopGain loop_gain(const Prediction<Pose>& prediction, const ScaleMixture& mixture,
                    const CovarianceScale& deviation) {
   const auto& [r, variance, log_sigma] = prediction;
-  const auto most = factors(deviation.loops);
+  const Factors odometry = factors(deviation.odometry);
+  const Factors own = factors(deviation.loops);
+  const Nodes stated = Nodes::Constant(1, mixture.scale * mixture.relative[1]);
+  std::array<Nodes, kScaleCount> by_odometry{odometry.log_weight, odometry.log_weight};
+  for (Eigen::Index i = 0; i < odometry.value.size(); ++i) {
+    const typename Pose::Tangent others = odometry.value[i] * variance;
+    by_odometry[0][i] +=
+        log_sum_of(own.log_weight + log_fit<Pose>(r, others, mixture.scale * own.value));
+    by_odometry[1][i] += log_fit<Pose>(r, others, stated)[0];
+  }
   ByScale density;
-  density.fill(-std::numeric_limits<double>::infinity());
-  const auto add = [&density](std::size_t scale, double log_term) {
-    density[scale] = log_sum(density[scale], log_term);
-  };
-  for (const Factor& odometry : factors(deviation.odometry)) {
-    const typename Pose::Tangent others = odometry.value * variance;
-    for (const Factor& own : most) {
-      add(0, mixture.log_share[0] + odometry.log_weight + own.log_weight +
-                 log_fit<Pose>(r, others, own.value * mixture.scale));
-    }
-    add(1, mixture.log_share[1] + odometry.log_weight +
-               log_fit<Pose>(r, others, mixture.scale * mixture.relative[1]));
+  for (std::size_t j = 0; j < kScaleCount; ++j) {
+    density[j] = mixture.log_share[j] + log_sum_of(by_odometry[j]);
   }
   LoopGain gain;
   gain.log_density = log_sum(density[0], density[1]) - 0.5 * (log_sigma + Pose::kDof * kLog2Pi);

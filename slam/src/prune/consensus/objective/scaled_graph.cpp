@@ -1,8 +1,13 @@
 #include "prune/consensus/objective/scaled_graph.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
+
+#include <Eigen/Cholesky>
+
+#include "prune/consensus/estimate/log_normal.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -25,6 +30,24 @@ PoseGraph<Pose> with_shapes(PoseGraph<Pose> graph, const EdgeRoles& roles,
   return graph;
 }
 
+// Of those that have nodes.
+template <class Pose>
+std::size_t chain_count(const ReducedGraph<Pose>& graph) {
+  std::vector<Index> chains = graph.chain;
+  std::ranges::sort(chains);
+  return chains.size() - std::ranges::unique(chains).size();
+}
+
+// log |H| of links none of which closes a cycle: a change of frame is of determinant 1.
+template <class Pose>
+double log_information(const std::vector<Link<Pose>>& links) {
+  double sum = 0.0;
+  for (const auto& link : links) {
+    sum += log_determinant(Eigen::LLT<typename Pose::Matrix>(link.information));
+  }
+  return sum;
+}
+
 }  // namespace
 
 template <class Pose>
@@ -33,8 +56,14 @@ ScaledGraph<Pose> scaled_graph(const PoseGraph<Pose>& graph, const EdgeRoles& ro
   ScaledGraph<Pose> scaled{shapes == Shapes<Pose>{}
                                ? reduce(graph, roles)
                                : reduce(with_shapes(graph, roles, shapes), roles)};
-  Estimate<Pose> odometry(scaled.reduced);
-  odometry.update(std::vector<bool>(scaled.reduced.loops.size(), false), {}, 0);
+  const ReducedGraph<Pose>& reduced = scaled.reduced;
+  if (reduced.steps.size() + chain_count(reduced) == reduced.vertex.size()) {
+    scaled.log_determinant = log_information(reduced.steps);
+    scaled.variables = static_cast<Index>(reduced.steps.size());
+    return scaled;
+  }
+  Estimate<Pose> odometry(reduced);
+  odometry.update(std::vector<bool>(reduced.loops.size(), false), {}, 0);
   scaled.log_determinant = odometry.log_determinant();
   scaled.variables = odometry.variable_count();
   return scaled;

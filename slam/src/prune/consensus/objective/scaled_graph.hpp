@@ -26,6 +26,9 @@ struct ScaledGraph {
   ReducedGraph<Pose> reduced;
   double log_determinant = 0.0;  ///< log |H| of odometry
   Index variables = 0;           ///< poses that are free in it
+
+  /// Whether one path of trusted edges at most joins any two poses.
+  bool is_forest() const { return reduced.steps.size() == static_cast<std::size_t>(variables); }
 };
 
 template <class Pose>
