@@ -51,7 +51,7 @@ constexpr std::array<EnumName<ControlGroup>, 2> enum_names(ControlGroup) {
 
 /// Where scores part true edges from false ones.
 enum class EdgeThreshold {
-  control,     ///< where an edge is more likely one of the control group than a true one
+  control,     ///< where edges of that score are false by all that heat measures of them
   mean_sigma,  ///< the others as ThresholdRule has them
   otsu,
   mixture,
@@ -65,6 +65,9 @@ constexpr std::array<EnumName<EdgeThreshold>, 5> enum_names(EdgeThreshold) {
            {EdgeThreshold::mixture, "mixture"},
            {EdgeThreshold::gap, "gap"}}};
 }
+
+/// Standard deviations above the mean where the mean-sigma rule is asked for without a konst.
+inline constexpr double kDefaultKonst = 3.0;
 
 struct JudgeEdgesOptions {
   EdgeScore method = EdgeScore::heat;
@@ -81,13 +84,13 @@ struct JudgeEdgesOptions {
   /// Affinity: diffusion time t of exp(-tL), in units of 1 / weight; finite, > 0.
   /// About one over the weight of a typical edge looks a few hops far.
   double scale = 1.0;
-  /// How the threshold is found from the scores, for all methods but heat and rank, which compare
-  /// with the control group always.
+  /// How the threshold is found from the scores, for all methods but heat, which always goes by the
+  /// control group.
   EdgeThreshold threshold = EdgeThreshold::control;
-  /// Standard deviations above the mean, for the mean-sigma rule, which heat-multiscale uses
-  /// unless another one is named; finite. The paper has 0 to 4; 1 takes about one edge in six at
-  /// every scale, whether any is false or not.
-  double konst = 3.0;
+  /// Standard deviations above the mean, for the mean-sigma rule: one value, or for heat-multiscale
+  /// one a scale, which uses that rule if any is named; finite. None: kDefaultKonst. The paper has
+  /// 0 to 4; 1 takes about one edge in six at every scale, whether any is false or not.
+  std::vector<double> konst;
   /// Heat-multiscale: diffusion times, descending, in units of 1 / weight; finite, >= 0. Empty:
   /// automatic_scales().
   std::vector<double> scales;
@@ -107,8 +110,10 @@ void visit_fields(Options& options, Visitor&& visit) {
   visit("control", options.control, "pairs that false edges resemble");
   visit("chance", options.chance, "prune what is less likely true", open(0, 1));
   visit("scale", options.scale, "affinity: diffusion time", left_open(0, 1e12));
-  visit("threshold", options.threshold, "but for heat, rank: what scores are compared with");
-  visit("konst", options.konst, "deviations above the mean, for mean-sigma", closed(-1e6, 1e6));
+  visit("threshold", options.threshold, "but for heat: what scores are compared with");
+  visit("konst", options.konst,
+        "deviations above the mean, for mean-sigma; heat-multiscale: one or one a scale",
+        or_none(closed(-1e6, 1e6)));
   visit("scales", options.scales,
         "heat-multiscale: diffusion times, descending; none: by the graph",
         or_none(closed(0, 1e12)));
