@@ -77,6 +77,9 @@ void bind_result(nb::class_<JudgedEdges>& bound) {
           "threshold", [](const JudgedEdges& self) { return self.result.threshold.value; },
           "What scores were compared with; infinite where there was nothing to split.")
       .def_prop_ro(
+          "warnings", [](const JudgedEdges& self) { return self.result.warnings; },
+          "What the scores cannot be trusted for, in words.")
+      .def_prop_ro(
           "seconds", [](const JudgedEdges& self) { return self.result.seconds; }, "Wall time.")
       .def("kept", kept, nb::kw_only(), "keep_ambiguous"_a = true,
            "The graph without the edges that are pruned and, unless keep_ambiguous, without those "
