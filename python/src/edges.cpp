@@ -5,6 +5,7 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include "graph.hpp"
 #include "isotherm/spectral/edges/judge_edges.hpp"
