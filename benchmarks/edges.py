@@ -3,10 +3,11 @@
 usage: edges.py ISOTHERM DATA [SEED...]
 
 Prints precision, recall and area under the curve of the default method beside Jaccard's index, the
-detour around an edge and edge betweenness at the threshold that labels choose, how many edges of
-clean versions are pruned, and for every method F at its default and at its own best threshold.
-Every false edge counts, also between vertices that happen to be near. Seeds are 1, 2 and 3 unless
-others are named. Needs numpy, scipy and networkx.
+detour around an edge and edge betweenness at the threshold that labels choose; for every method F
+at its default and at its own best threshold; and how many edges of clean versions each prunes.
+Every false edge counts, also between vertices that happen to be near. Method rank is told the
+positions, where the table of methods names it. Detours are counted up to MOST steps, betweenness
+over PIVOTS sources. Seeds are 1, 2 and 3 unless others are named. Needs numpy, scipy and networkx.
 """
 
 import collections
@@ -19,11 +20,15 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from graphs import (Bench, add_false_edges, area_under_curve, minnesota, precision_and_recall,
-                    random_geometric, swiss_roll)
+                    random_geometric, swiss_roll, write_positions)
 
-METHODS = ("heat", "heat-multiscale", "affinity", "resistance", "jaccard", "common-neighbours")
+METHODS = ("heat", "heat-multiscale", "affinity", "resistance", "jaccard", "common-neighbours",
+           "rank")
+SLOW = {"heat-multiscale", "affinity", "resistance"}  # left out above MANY edges
+MANY = 30_000
 FAR = 20.0  # along the sheet, between the ends of a short circuit
-PIVOTS = 200  # of sampled betweenness
+PIVOTS = 100
+MOST = 12
 
 
 def torus(count, rng, neighbours=8):
@@ -64,7 +69,14 @@ def shorted_roll(count, shorts, rng):
     false = np.array(sorted(found), dtype=int).reshape(-1, 2)
     labels = np.r_[np.zeros(len(edges), int), np.ones(len(false), int)]
     order = rng.permutation(len(labels))
-    return np.r_[edges, false][order], labels[order]
+    return np.r_[edges, false][order], labels[order], points
+
+
+def grid(side):
+    vertex = np.arange(side * side).reshape(side, side)
+    edges = np.r_[np.c_[vertex[:, :-1].ravel(), vertex[:, 1:].ravel()],
+                  np.c_[vertex[:-1].ravel(), vertex[1:].ravel()]]
+    return edges, np.c_[np.indices((side, side)).reshape(2, -1).T].astype(float), np.ones(side**2)
 
 
 def invert_arc(along):
@@ -75,10 +87,11 @@ def invert_arc(along):
 
 
 def graphs(data, seed, clean):
-    """Name, (edges, labels) of every graph."""
+    """Name, (edges, labels, positions) of every graph."""
     def shared(make, share):
         rng = np.random.default_rng(seed)
-        return add_false_edges(make(rng), 0.0 if clean else share, rng)
+        graph = make(rng)
+        return *add_false_edges(graph, 0.0 if clean else share, rng), graph[1]
     yield "torus", shared(lambda rng: torus(2000, rng), 0.1)
     for count, shorts in ((2000, 80), (10000, 400)):
         rolled = shorted_roll(count, 0 if clean else shorts, np.random.default_rng(seed))
@@ -88,6 +101,7 @@ def graphs(data, seed, clean):
     yield "crambin, all atoms", shared(lambda rng: crambin(data, None, 5.0), 0.1)
     yield "random geometric, 20 %", shared(lambda rng: random_geometric(2000, rng), 0.2)
     yield "random geometric, 50 %", shared(lambda rng: random_geometric(2000, rng), 0.5)
+    yield "grid of 20 x 20, 5 % false", shared(lambda rng: grid(20), 0.05)
 
 
 def best_threshold(scores, false):
@@ -101,23 +115,25 @@ def best_threshold(scores, false):
     return f[k], right[k] / pruned[k], right[k] / false.sum()
 
 
-def detours(edges, most=20):
+def detours(edges):
+    """Fewest steps between the ends of each edge without it, searched for from both."""
     neighbours = collections.defaultdict(set)
     for a, b in edges:
         neighbours[a].add(b)
         neighbours[b].add(a)
 
-    def count(start, goal):
-        seen, rim = {start}, {start}
-        for steps in range(1, most + 1):
-            rim = {w for v in rim for w in neighbours[v]
-                   if w not in seen and {v, w} != {start, goal}}
-            if goal in rim:
+    def count(*ends):
+        seen, rims = [{v} for v in ends], [{v} for v in ends]
+        for steps in range(1, MOST + 1):
+            side = int(len(rims[1]) < len(rims[0]))
+            rims[side] = {w for v in rims[side] for w in neighbours[v]
+                          if w not in seen[side] and {v, w} != set(ends)}
+            if rims[side] & seen[1 - side]:
                 return steps
-            if not rim:
+            if not rims[side]:
                 return 0  # a bridge: nothing else joins the two
-            seen |= rim
-        return most + 1
+            seen[side] |= rims[side]
+        return MOST + 1
 
     return np.array([count(a, b) for a, b in edges], dtype=float)
 
@@ -134,19 +150,33 @@ class Table:
         self.bench, self.data, self.seeds = bench, data, seeds
 
     def rows(self):
-        names = [name for name, _ in graphs(self.data, self.seeds[0], True)]
-        found = {name: collections.defaultdict(list) for name in names}
+        found = collections.defaultdict(lambda: collections.defaultdict(list))
         for seed in self.seeds:
-            for name, (edges, _) in graphs(self.data, seed, True):
-                found[name]["clean"].append((self.bench.judge(edges, "heat")[0] == "prune").mean())
-            for name, (edges, labels) in graphs(self.data, seed, False):
-                self.measure(edges, np.minimum(labels, 1), found[name])
+            for name, (edges, _, points) in graphs(self.data, seed, True):
+                for method in self.methods(name, edges):
+                    verdict = self.judge(edges, method, points)[0]
+                    found[name][f"clean {method}"].append((verdict == "prune").mean())
+            for name, (edges, labels, points) in graphs(self.data, seed, False):
+                self.measure(edges, np.minimum(labels, 1), points, found[name],
+                             self.methods(name, edges))
+                print(f"seed {seed}: {name}", file=sys.stderr, flush=True)
         return found
 
-    def measure(self, edges, labels, row):
+    @staticmethod
+    def methods(name, edges):
+        known = name.startswith(("Swiss", "Minnesota", "grid"))  # whose positions are told
+        return [method for method in METHODS if (method != "rank" or known) and
+                (method not in SLOW or len(edges) < MANY)]
+
+    def judge(self, edges, method, points):
+        told = method == "rank"
+        flags = ["--positions", write_positions(points, self.bench.folder)] if told else []
+        return self.bench.judge(edges, method, flags)
+
+    def measure(self, edges, labels, points, row, methods):
         false = labels == 1
-        for method in METHODS:
-            verdict, scores, *_ = self.bench.judge(edges, method)
+        for method in methods:
+            verdict, scores, *_ = self.judge(edges, method, points)
             scores = np.where(np.isfinite(scores), scores, scores[np.isfinite(scores)].min())
             precision, recall = precision_and_recall(verdict, labels)
             f = 2 * precision * recall / max(1e-9, precision + recall)
@@ -157,27 +187,46 @@ class Table:
                               *best_threshold(scores, false)))
 
 
+def print_default(found):
+    print("| graph | heat P | R | AUC | Jaccard P | R | AUC | detour P | R | AUC "
+          "| betweenness P | R | AUC |")
+    print("|---" * 13 + "|")
+    for name, row in found.items():
+        heat = np.mean(row["heat"], axis=0)
+        cells = [f"{heat[0]:.3f}", f"{heat[1]:.3f}", f"{heat[2]:.4f}"]
+        for other in ("jaccard", "detour", "betweenness"):
+            means = np.mean(row[other], axis=0)
+            cells += [f"{means[5]:.3f}", f"{means[6]:.3f}", f"{means[2]:.4f}"]
+        print(f"| {name} | " + " | ".join(cells) + " |")
+
+
+def print_methods(found, title, cell):
+    print(f"\n| {title} | " + " | ".join(METHODS) + " |")
+    print("|---" * (len(METHODS) + 1) + "|")
+    for name, row in found.items():
+        print(f"| {name} | " + " | ".join(cell(row, method) for method in METHODS) + " |")
+
+
+def default_of_best(row, method):
+    if method not in row:
+        return "-"
+    means = np.mean(row[method], axis=0)
+    return f"{means[3]:.3f} of {means[4]:.3f}"
+
+
+def share_of_clean(row, method):
+    share = row.get(f"clean {method}")
+    return "-" if share is None else f"{100 * np.mean(share):.2f} %"
+
+
 def main():
     command, data = sys.argv[1:3]
     seeds = [int(seed) for seed in sys.argv[3:]] or [1, 2, 3]
     with tempfile.TemporaryDirectory() as folder:
         found = Table(Bench(command, folder), data, seeds).rows()
-    print("| graph | heat P | R | AUC | clean pruned | Jaccard P | R | AUC | detour P | R | AUC "
-          "| betweenness P | R | AUC |")
-    print("|---" * 14 + "|")
-    for name, row in found.items():
-        heat = np.mean(row["heat"], axis=0)
-        cells = [f"{value:.3f}" for value in heat[:2]] + [f"{heat[2]:.4f}",
-                                                          f"{100 * np.mean(row['clean']):.2f} %"]
-        for other in ("jaccard", "detour", "betweenness"):
-            means = np.mean(row[other], axis=0)
-            cells += [f"{means[5]:.3f}", f"{means[6]:.3f}", f"{means[2]:.4f}"]
-        print(f"| {name} | " + " | ".join(cells) + " |")
-    print("\n| graph | " + " | ".join(METHODS) + " |")
-    print("|---" * (len(METHODS) + 1) + "|")
-    for name, row in found.items():
-        means = [np.mean(row[method], axis=0) for method in METHODS]
-        print(f"| {name} | " + " | ".join(f"{m[3]:.3f} of {m[4]:.3f}" for m in means) + " |")
+    print_default(found)
+    print_methods(found, "graph", default_of_best)
+    print_methods(found, "clean graph", share_of_clean)
 
 
 if __name__ == "__main__":

@@ -127,8 +127,7 @@ int main(int argc, char** argv) {
   const auto clean = isotherm::geometry::nearest_neighbour_graph(roll.points, 7);
   const auto shorted = with_short_circuits(clean, roll, random);
 
-  // They join neighbouring layers, not just any two points.
-  const auto result = judge_edges(shorted, {.control = ControlGroup::near});
+  const auto result = judge_edges(shorted);
   std::vector<bool> keep;
   for (const auto& verdict : result.verdicts) keep.push_back(verdict.verdict != Verdict::prune);
   const auto pruned = filter_edges(shorted, keep);

@@ -22,7 +22,7 @@ using namespace spectral;
 
 struct EdgesOptions {
   std::vector<double> scales;
-  std::vector<double> konst = {JudgeEdgesOptions{}.konst};  // as on one machine
+  std::vector<double> konst = {kDefaultKonst};  // as on one machine
   double tolerance = 1e-9;
   distributed::Partitioner partitioner = distributed::Partitioner::scotch;
 

@@ -121,12 +121,17 @@ struct DistributedHeat : OptionVerb<HeatOptions> {
         fmt::format("{}, {}, brackets at most {:.1e} wide, {:.2f} s{}", counted(asked, "pair"),
                     counted(result.scales.size(), "scale"), result.widest, result.seconds,
                     result.converged() ? "" : "; not converged"));
+    if (result.imprecise > 0) {
+      const auto values = static_cast<std::int64_t>(asked * result.scales.size());
+      warn(flags, words_of_imprecise(result.imprecise, values, "heat distances"));
+    }
     write_json_of(session, flags.json,
                   {{"schema", "isotherm.heat/1"},
                    {"pairs", asked},
                    {"scales", result.scales},
                    {"widest", result.widest},
                    {"unconverged", result.unconverged},
+                   {"imprecise", result.imprecise},
                    {"seconds", result.seconds},
                    {"options", options_to_json(options)},
                    {"graph", graph_json(graph)}});

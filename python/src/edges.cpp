@@ -5,6 +5,7 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include "graph.hpp"
 #include "isotherm/spectral/edges/judge_edges.hpp"
@@ -76,6 +77,9 @@ void bind_result(nb::class_<JudgedEdges>& bound) {
       .def_prop_ro(
           "threshold", [](const JudgedEdges& self) { return self.result.threshold.value; },
           "What scores were compared with; infinite where there was nothing to split.")
+      .def_prop_ro(
+          "warnings", [](const JudgedEdges& self) { return self.result.warnings; },
+          "What the scores cannot be trusted for, in words.")
       .def_prop_ro(
           "seconds", [](const JudgedEdges& self) { return self.result.seconds; }, "Wall time.")
       .def("kept", kept, nb::kw_only(), "keep_ambiguous"_a = true,

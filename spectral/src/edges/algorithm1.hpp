@@ -18,7 +18,9 @@ namespace isotherm::spectral::detail {
 ///
 ///     std::vector<double> scales();  // where none are asked for
 ///     HeatDistanceResult distances(double scale, const std::vector<std::size_t>& remaining);
-///     Threshold threshold(const std::vector<double>& distances, const ThresholdOptions&);
+///     // Of the distances of the candidates that remain.
+///     Threshold threshold(const std::vector<double>& distances,
+///                         const std::vector<std::size_t>& remaining, const ThresholdOptions&);
 ///     std::int64_t total(std::int64_t mine);  // over all parts
 ///     void remove(std::size_t candidate);     // its edge, from the graph
 template <class Engine>
@@ -46,7 +48,7 @@ class Algorithm1 {
   void prune_at(double scale, double konst) {
     const auto remaining = remaining_candidates();
     const auto distances = distances_at(scale, remaining);
-    auto round = round_at(scale, konst, distances);
+    auto round = round_at(scale, konst, distances, remaining);
     round.candidates = engine_.total(static_cast<std::int64_t>(remaining.size()));
     std::vector<double> all(result_.verdicts.size(), std::numeric_limits<double>::quiet_NaN());
     std::int64_t pruned = 0;
@@ -70,13 +72,16 @@ class Algorithm1 {
   std::vector<double> distances_at(double scale, const std::vector<std::size_t>& remaining) {
     const auto heat = engine_.distances(scale, remaining);
     result_.unconverged += heat.unconverged;
+    result_.imprecise += heat.imprecise;
     result_.widest_bracket = std::max(result_.widest_bracket, heat.widest);
     return heat.column(0);
   }
 
-  HeatRound round_at(double scale, double konst, const std::vector<double>& distances) {
+  HeatRound round_at(double scale, double konst, const std::vector<double>& distances,
+                     const std::vector<std::size_t>& remaining) {
     const bool adapts = options_.threshold != ThresholdRule::mean_sigma;
-    const auto found = engine_.threshold(distances, {.rule = options_.threshold, .konst = konst});
+    const auto found =
+        engine_.threshold(distances, remaining, {.rule = options_.threshold, .konst = konst});
     const bool apart = !adapts || found.separation >= options_.min_separation;
     // At 0 all are equal, and their mean may be rounded to less than each.
     const double threshold = scale > 0.0 && apart ? found.value : kNoThreshold;

@@ -132,7 +132,7 @@ class Rounds {
     }
     auto judgement = odds(heat, plane);
     for (int round = 0; round < most_rounds; ++round) {
-      const auto trust = trust_of(judgement.groups.truth, kEven);
+      const auto trust = vouching(judgement.groups.truth);
       const auto affinities =
           walk_affinities(graph_, trust, thin_out(pairs_), walks(options_.rounds - 1, trust));
       forget(heat);
@@ -142,10 +142,31 @@ class Rounds {
       judgement = odds(heat, plane);
       if (have_settled(heat.groups, judgement.groups)) break;
     }
+    if (!plane) doubt_the_farthest(heat, judgement);
     return judgement;
   }
 
  private:
+  /// Odds level off where hardly any edge is true. What lies farther is counted instead: an edge is
+  /// false where heat alone, against the pairs, leaves no doubt of it.
+  static void doubt_the_farthest(const Judgement& heat, Judgement& judgement) {
+    constexpr double kDoubt = 0.05;
+    const auto by_heat = separate_groups(heat.edges, heat.pairs, kMostFalse).truth;
+    auto& [truth, false_count] = judgement.groups;
+    const auto count = static_cast<double>(truth.size());
+    // So many edges tell a probability no better (Laplace's rule of succession).
+    const double least = 1.0 / (count + 2.0);
+    const double prior = std::log(false_count / (count - false_count));
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      if (by_heat[k] >= std::min(kDoubt, truth[k])) continue;
+      truth[k] = std::min(truth[k], std::max(by_heat[k], least));
+      judgement.edges[k] = std::max(judgement.edges[k], std::log(1.0 / truth[k] - 1.0) - prior);
+    }
+    double expected = 0.0;
+    for (const double p : truth) expected += 1.0 - p;
+    false_count = std::max(false_count, expected);
+  }
+
   /// Whether no more than one false edge in a hundred, or half an edge, changed its place.
   static bool have_settled(const TwoGroups& before, const TwoGroups& after) {
     constexpr double kShare = 0.01;
@@ -165,16 +186,16 @@ class Rounds {
     }
     std::vector<Measured> measured = {
         {within_reach(heat.edges, heat), within_reach(heat.pairs, heat)}};
+    level_off(measured.front());
     if (plane) {
       measured.insert(measured.end(), {plane->crossings, plane->few_crossings, plane->distances});
     }
-    // As far as walks go from both ends.
-    const auto trust = trust_of(truth, kEven);
-    const auto features =
-        pair_features(graph_, trust, thin_out(pairs_), measured,
-                      {.most_steps = 2 * walks(options_.rounds - 1, trust).horizon,
-                       .threads = options_.threads,
-                       .progress = options_.progress});
+    // As far as walks go.
+    const auto trust = vouching(truth);
+    const auto features = pair_features(graph_, {truth, trust}, thin_out(pairs_), measured,
+                                        {.most_steps = walks(options_.rounds - 1, trust).horizon,
+                                         .threads = options_.threads,
+                                         .progress = options_.progress});
     auto found = edge_odds(features, std::move(truth));
     return {std::move(found.scores),
             {},
@@ -190,6 +211,20 @@ class Rounds {
   static std::vector<double> trust_of(std::vector<double> trust, double chance) {
     for (double& p : trust) {
       if (p < chance) p = 0.0;
+    }
+    return trust;
+  }
+
+  /// The trust of edges that are more likely true than false. A vertex all of whose edges are
+  /// likely false keeps them: one of them should be true, or it would not be there.
+  std::vector<double> vouching(const std::vector<double>& truth) const {
+    auto trust = trust_of(truth, kEven);
+    std::vector<bool> joined(graph_.vertex_count(), false);
+    for (Index e = 0; e < graph_.edge_count(); ++e) {
+      if (trust[e] > 0.0) joined[graph_.edge(e).from] = joined[graph_.edge(e).to] = true;
+    }
+    for (Index e = 0; e < graph_.edge_count(); ++e) {
+      if (!joined[graph_.edge(e).from] || !joined[graph_.edge(e).to]) trust[e] = 1.0;
     }
     return trust;
   }

@@ -3,17 +3,19 @@
 #include <chrono>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "edges/annealed_heat.hpp"
-#include "edges/control_pairs.hpp"
-#include "edges/odds/two_groups.hpp"
+#include "edges/calibrated_heat.hpp"
+#include "edges/control_threshold.hpp"
+#include "edges/edge_scores.hpp"
 #include "edges/pair_ranks.hpp"
-#include "edges/pair_scores.hpp"
 #include "graph/bridges.hpp"
 #include "graph/simple_graph.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/text_writer.hpp"
 #include "isotherm/spectral/edges/multiscale_heat.hpp"
+#include "isotherm/spectral/heat/heat_distance.hpp"
 
 namespace isotherm::spectral {
 namespace {
@@ -72,27 +74,24 @@ JudgeEdgesResult judge_all(const WeightedGraph& graph, const Structure& structur
   return result;
 }
 
-/// A threshold with the mean of |2 p - 1|: how decided the probabilities of the edges are.
-Threshold decided_threshold(double value, const std::vector<double>& truth) {
-  Threshold threshold{value, 0.0, !std::isfinite(value)};
-  for (const double p : truth) threshold.separation += std::abs(2.0 * p - 1.0);
-  if (!truth.empty()) threshold.separation /= static_cast<double>(truth.size());
-  return threshold;
+/// What all that is measured says of the simple graph's edges.
+detail::AnnealedHeat weigh_all(const Structure& structure, const JudgeEdgesOptions& options,
+                               const RunContext& run) {
+  return detail::anneal_heat(structure.simple.graph, {.rounds = options.rounds,
+                                                      .chance = options.chance,
+                                                      .control = options.control,
+                                                      .seed = run.seed,
+                                                      .threads = run.threads,
+                                                      .progress = run.progress});
 }
 
 JudgeEdgesResult judge_by_heat(const WeightedGraph& graph, const Structure& structure,
                                const JudgeEdgesOptions& options, const RunContext& run) {
-  const auto& edges = structure.simple.graph;
-  const auto heat = detail::anneal_heat(edges, {.rounds = options.rounds,
-                                                .chance = options.chance,
-                                                .control = options.control,
-                                                .seed = run.seed,
-                                                .threads = run.threads,
-                                                .progress = run.progress});
+  const auto heat = weigh_all(structure, options, run);
   const std::string stage = "heat scale " + format_number(heat.scale) + " steps " +
                             std::to_string(heat.horizon) + (heat.in_plane ? " crossings" : "");
-  return judge_all(graph, structure, heat.scores, decided_threshold(heat.threshold, heat.truth),
-                   stage);
+  return judge_all(graph, structure, heat.scores,
+                   detail::decided_threshold(heat.threshold, heat.truth), stage);
 }
 
 void check_positions(const WeightedGraph& graph, const Eigen::MatrixXd& positions) {
@@ -102,30 +101,19 @@ void check_positions(const WeightedGraph& graph, const Eigen::MatrixXd& position
   if (!positions.allFinite()) throw InvalidArgument("positions", "must be finite");
 }
 
-detail::PairScores ranks(const WeightedGraph& graph, const std::vector<VertexPair>& pairs,
-                         const Eigen::MatrixXd& positions, const RunContext& run) {
-  const auto of = [&](const std::vector<VertexPair>& ends) {
-    return detail::pair_ranks(positions, ends, run.threads, run.progress);
-  };
-  return {of(edge_pairs(graph)), of(pairs)};
-}
-
-/// Scores of what may be false: neither bridges nor edges about which nothing is known.
-std::vector<double> scores_in_question(const std::vector<double>& scores,
-                                       const std::vector<bool>& bridge) {
+/// Values of what may be false: of neither bridges nor edges about which nothing is known.
+std::vector<double> in_question(const std::vector<double>& values,
+                                const std::vector<double>& scores,
+                                const std::vector<bool>& bridge) {
   std::vector<double> known;
   for (std::size_t e = 0; e < scores.size(); ++e) {
-    if (!bridge[e] && std::isfinite(scores[e])) known.push_back(scores[e]);
+    if (!bridge[e] && std::isfinite(scores[e])) known.push_back(values[e]);
   }
   return known;
 }
 
-Threshold threshold_by_control(const std::vector<double>& scores, std::vector<double> pairs,
-                               double chance) {
-  constexpr double kMostFalse = 0.4;  // one round cannot tell more from a poor score
-  std::erase_if(pairs, [](double score) { return !std::isfinite(score); });
-  const auto groups = detail::separate_groups(scores, pairs, kMostFalse);
-  return decided_threshold(detail::rejection_threshold(scores, groups, chance), groups.truth);
+std::vector<double> konst_of(const JudgeEdgesOptions& options) {
+  return options.konst.empty() ? std::vector{kDefaultKonst} : options.konst;
 }
 
 ThresholdRule rule_of(EdgeThreshold threshold) {
@@ -144,22 +132,33 @@ ThresholdRule rule_of(EdgeThreshold threshold) {
   throw InvalidArgument("threshold", "is not a rule of scores alone");
 }
 
+detail::EdgeScores scores_of(const WeightedGraph& graph, const Structure& structure,
+                             const JudgeEdgesOptions& options, const Eigen::MatrixXd& positions,
+                             const RunContext& run) {
+  const auto& edges = structure.simple.graph;
+  if (options.method != EdgeScore::rank) return detail::score_edges(edges, options, run);
+  check_positions(graph, positions);
+  return {detail::pair_ranks(positions, edge_pairs(edges), run.threads, run.progress), {}};
+}
+
 JudgeEdgesResult judge_by_scores(const WeightedGraph& graph, const Structure& structure,
                                  const JudgeEdgesOptions& options, const Eigen::MatrixXd& positions,
                                  const RunContext& run) {
-  const auto& edges = structure.simple.graph;
-  const bool by_rank = options.method == EdgeScore::rank;
-  if (by_rank) check_positions(graph, positions);
-  const auto pairs = detail::control_pairs(edges, options.control, run.seed);
-  const auto scores = by_rank ? ranks(edges, pairs, positions, run)
-                              : detail::score_pairs(edges, pairs, options, run);
-  const auto questioned = scores_in_question(scores.edges, structure.bridge);
-  const bool control = by_rank || options.threshold == EdgeThreshold::control;
-  const auto threshold = control ? threshold_by_control(questioned, scores.pairs, options.chance)
-                                 : find_threshold(questioned, {.rule = rule_of(options.threshold),
-                                                               .konst = options.konst});
-  auto result = judge_all(graph, structure, scores.edges, threshold, enum_name(options.method));
-  result.warnings = scores.warnings;
+  auto [scores, warnings] = scores_of(graph, structure, options, positions, run);
+  const auto questioned = in_question(scores, scores, structure.bridge);
+  Threshold threshold;
+  if (options.threshold == EdgeThreshold::control) {
+    const auto truth =
+        in_question(weigh_all(structure, options, run).truth, scores, structure.bridge);
+    threshold = detail::control_threshold(questioned, truth);
+    const auto doubts = detail::doubts_of(questioned, truth, threshold, enum_name(options.method));
+    warnings.insert(warnings.end(), doubts.begin(), doubts.end());
+  } else {
+    threshold = find_threshold(
+        questioned, {.rule = rule_of(options.threshold), .konst = konst_of(options).front()});
+  }
+  auto result = judge_all(graph, structure, scores, threshold, enum_name(options.method));
+  result.warnings = std::move(warnings);
   return result;
 }
 
@@ -167,7 +166,7 @@ MultiscaleHeatOptions multiscale_options(const JudgeEdgesOptions& options) {
   const bool other_rule = options.threshold != EdgeThreshold::control;
   return {.scales = options.scales,
           .threshold = other_rule ? rule_of(options.threshold) : ThresholdRule::mean_sigma,
-          .konst = {options.konst},
+          .konst = konst_of(options),
           .tolerance = options.tolerance};
 }
 
@@ -188,11 +187,31 @@ std::vector<Index> candidates(const Structure& structure, const std::vector<Inde
   return edges;
 }
 
+/// How many distances were found at all scales.
+std::int64_t distance_count(const MultiscaleHeat& heat) {
+  std::int64_t count = 0;
+  for (const auto& round : heat.rounds) count += round.candidates;
+  return count;
+}
+
+/// By eq. 11 where a konst is named.
+MultiscaleHeat heat_of(const Structure& structure, const std::vector<Index>& judged,
+                       const JudgeEdgesOptions& options, const RunContext& run) {
+  const auto& graph = structure.simple.graph;
+  const auto multiscale = multiscale_options(options);
+  if (options.threshold != EdgeThreshold::control || !options.konst.empty()) {
+    return multiscale_heat(graph, judged, multiscale, run);
+  }
+  const auto all = weigh_all(structure, options, run).truth;
+  std::vector<double> truth;
+  for (const Index edge : judged) truth.push_back(all[edge]);
+  return detail::calibrated_heat(graph, judged, truth, multiscale, run);
+}
+
 JudgeEdgesResult judge_by_algorithm_1(const WeightedGraph& graph, const Structure& structure,
                                       const JudgeEdgesOptions& options, const RunContext& run) {
   const auto judged = candidates(structure, options.trusted);
-  const auto heat =
-      multiscale_heat(structure.simple.graph, judged, multiscale_options(options), run);
+  const auto heat = heat_of(structure, judged, options, run);
   std::vector<double> scores(structure.bridge.size(), 0.0);
   std::vector<std::string> stages(structure.bridge.size(), "trusted");
   std::vector<bool> pruned(structure.bridge.size(), false);
@@ -202,6 +221,10 @@ JudgeEdgesResult judge_by_algorithm_1(const WeightedGraph& graph, const Structur
     pruned[judged[k]] = heat.verdicts[k].pruned;
   }
   auto result = judge_all(graph, structure, scores, {.value = 1.0}, "trusted");
+  if (heat.imprecise > 0) {
+    result.warnings.push_back(
+        words_of_imprecise(heat.imprecise, distance_count(heat), "heat distances"));
+  }
   for (auto& verdict : result.verdicts) {
     const Index edge = structure.simple.merged[verdict.edge];
     if (edge == detail::SimpleGraph::kNone || structure.bridge[edge]) continue;

@@ -1,8 +1,12 @@
 #include "isotherm/spectral/edges/multiscale_heat.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "edges/algorithm1.hpp"
+#include "edges/calibrated_heat.hpp"
+#include "edges/odds/two_groups.hpp"
 #include "isotherm/spectral/heat/heat_scales.hpp"
 
 namespace isotherm::spectral {
@@ -38,7 +42,8 @@ class OneMachine {
         {.tolerance = tolerance_, .threads = run_.threads, .progress = run_.progress});
   }
 
-  static Threshold threshold(const std::vector<double>& distances, const ThresholdOptions& rule) {
+  static Threshold threshold(const std::vector<double>& distances, const std::vector<std::size_t>&,
+                             const ThresholdOptions& rule) {
     return find_threshold(distances, rule);
   }
 
@@ -52,6 +57,28 @@ class OneMachine {
   double tolerance_;
   const RunContext& run_;
   std::vector<bool> keep_;
+};
+
+// The same, with thresholds by what else has told of the edges.
+class CalibratedMachine : public OneMachine {
+ public:
+  CalibratedMachine(OneMachine machine, std::span<const double> truth)
+      : OneMachine(std::move(machine)), truth_(truth) {}
+
+  Threshold threshold(const std::vector<double>& distances,
+                      const std::vector<std::size_t>& remaining, const ThresholdOptions&) const {
+    constexpr double kEven = 0.5;  // at every scale: more likely false than true
+    std::vector<double> truth;
+    for (const std::size_t candidate : remaining) truth.push_back(truth_[candidate]);
+    const double value =
+        detail::threshold_of_best_f(distances, detail::calibrate(distances, truth), kEven);
+    // Where none is to be pruned, scores are relative to the largest.
+    if (std::isfinite(value) || distances.empty()) return {.value = value};
+    return {.value = std::ranges::max(distances)};
+  }
+
+ private:
+  std::span<const double> truth_;  // of the candidates
 };
 
 }  // namespace
@@ -84,6 +111,16 @@ MultiscaleHeat multiscale_heat(const WeightedGraph& graph, std::span<const Index
   return detail::Algorithm1(OneMachine(graph, candidates, options.tolerance, run),
                             candidates.size(), options)
       .run();
+}
+
+MultiscaleHeat detail::calibrated_heat(const WeightedGraph& graph,
+                                       std::span<const Index> candidates,
+                                       std::span<const double> truth,
+                                       const MultiscaleHeatOptions& options,
+                                       const RunContext& run) {
+  options.validate();
+  OneMachine machine(graph, candidates, options.tolerance, run);
+  return Algorithm1(CalibratedMachine(std::move(machine), truth), candidates.size(), options).run();
 }
 
 }  // namespace isotherm::spectral

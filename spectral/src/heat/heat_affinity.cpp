@@ -57,6 +57,7 @@ HeatAffinityResult combine(std::span<const double> scales, const HeatTable& dist
                                          diagonals.values[ends[k].to * count + s],
                                          distances.values[k * count + s]);
       result.widest = std::max(result.widest, value.width());
+      if (!is_precise(value)) ++result.imprecise;
       result.values.push_back(value);
     }
   }

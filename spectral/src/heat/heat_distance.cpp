@@ -35,6 +35,11 @@ void summarise(HeatDistanceResult& result, double tolerance) {
 
 }  // namespace
 
+std::string words_of_imprecise(std::int64_t imprecise, std::int64_t all, std::string_view what) {
+  return std::to_string(imprecise) + " of " + std::to_string(all) + ' ' + std::string(what) +
+         " have bounds wider than 1e-6 relative";
+}
+
 void HeatDistanceOptions::validate() const {
   require_fields_in_range(*this);
   if (threads < 0) throw InvalidArgument("threads", "must not be negative");

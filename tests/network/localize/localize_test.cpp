@@ -270,7 +270,7 @@ TEST(Localize, AnIsolatedNodeIsNotConnected) {
   }
 }
 
-TEST(Localize, FalseRangesDoNotPlaceANode) {
+TEST(Localize, FalseRangesDoNotConnectANode) {
   // Four ranges to nodes that have no neighbour in common, with any lengths.
   auto simulated = simulate_network({.nodes = 200, .degree = 16.0, .noise = 0.02, .seed = 5});
   auto& network = simulated.network;
@@ -282,11 +282,12 @@ TEST(Localize, FalseRangesDoNotPlaceANode) {
   for (const Index other : corners(simulated.truth))
     ranges.push_back({stray, other, 0.1, variance});
   const auto result = localize(network);
-  EXPECT_TRUE(result.nodes[stray] == NodeStatus::not_connected ||
-              result.nodes[stray] == NodeStatus::not_placed);
+  EXPECT_EQ(result.nodes[stray], NodeStatus::not_connected);
   for (std::size_t k = ranges.size() - 4; k < ranges.size(); ++k) {
-    EXPECT_NE(result.verdicts[k].verdict, Verdict::keep);
+    EXPECT_EQ(result.verdicts[k].verdict, Verdict::prune);
   }
+  // No range of another node is.
+  EXPECT_EQ(count(result.verdicts, Verdict::prune), 4);
   EXPECT_GE(result.count(NodeStatus::localised), 180);
 }
 

@@ -257,8 +257,7 @@ TEST(JudgeEdges, BridgesAreAmbiguousAndSelfLoopsKept) {
       7, {{0, 1, 1.0}, {1, 2, 1.0}, {2, 0, 1.0}, {2, 3, 1.0}, {4, 4, 1.0}, {5, 6, 2.0}});
   const Eigen::MatrixXd positions = Eigen::MatrixXd::Zero(2, 7);
   for (const auto method : kAllMethods) {
-    const JudgeEdgesOptions options = {
-        .method = method, .threshold = EdgeThreshold::mean_sigma, .konst = 3.0};
+    const JudgeEdgesOptions options = {.method = method, .threshold = EdgeThreshold::mean_sigma};
     const auto verdicts = judge_edges(graph, options, positions).verdicts;
     EXPECT_EQ(verdicts[0].verdict, Verdict::keep) << enum_name(method);
     EXPECT_EQ(verdicts[4].stage, "self-loop");
@@ -313,6 +312,65 @@ TEST(JudgeEdges, EveryMethodLeavesCleanGraphsWhole) {
     const auto verdicts = judge_edges(sheet, {.method = method}).verdicts;
     EXPECT_LE(count(verdicts, Verdict::prune), sheet.edge_count() / 200) << enum_name(method);
   }
+}
+
+TEST(JudgeEdges, FourFalseEdgesOfOneVertexAreFound) {
+  // Four edges of one vertex lead to places far from each other: none vouches for another.
+  Random random(90);
+  const auto sheet = with_false_edges(300, 0.13, 0, random);
+  const auto far = [&](Index v) {
+    std::vector<Index> steps(300, -1), queue = {v};
+    steps[v] = 0;
+    for (std::size_t k = 0; k < queue.size(); ++k) {
+      for (const auto& n : sheet.neighbours(queue[k])) {
+        if (steps[n.vertex] >= 0) continue;
+        steps[n.vertex] = steps[queue[k]] + 1;
+        queue.push_back(n.vertex);
+      }
+    }
+    return queue;  // from near to far
+  };
+  std::vector<WeightedEdge> edges(sheet.edges().begin(), sheet.edges().end());
+  const auto order = far(0);
+  for (const std::size_t place :
+       {std::size_t{0}, order.size() / 3, 2 * order.size() / 3, order.size() - 1}) {
+    edges.push_back({300, order[place], 1.0});
+  }
+  const auto verdicts = judge_edges({301, edges}).verdicts;
+  const auto pruned = [](const EdgeVerdict& v) { return v.verdict == Verdict::prune; };
+  EXPECT_EQ(std::count_if(verdicts.end() - 4, verdicts.end(), pruned), 4);
+  EXPECT_LE(std::count_if(verdicts.begin(), verdicts.end() - 4, pruned), 2);
+}
+
+TEST(JudgeEdges, EveryMethodTakesItsThresholdFromWhatHeatMeasures) {
+  // Common neighbours say nothing of a grid, and so prune nothing of it; affinity finds most.
+  const auto grid = grid_graph(20, 20);
+  std::vector<WeightedEdge> edges(grid.edges().begin(), grid.edges().end());
+  for (Index k = 0; k < 12; ++k) edges.push_back({21 + 3 * k, 399 - 17 * k, 1.0});
+  const WeightedGraph graph(400, edges);
+  for (const auto method : {EdgeScore::jaccard, EdgeScore::common_neighbours}) {
+    EXPECT_EQ(count(judge_edges(graph, {.method = method}).verdicts, Verdict::prune), 0);
+  }
+  for (const auto method : {EdgeScore::affinity, EdgeScore::heat_multiscale}) {
+    const auto verdicts = judge_edges(graph, {.method = method}).verdicts;
+    const auto pruned = [](const EdgeVerdict& v) { return v.verdict == Verdict::prune; };
+    EXPECT_GE(std::count_if(verdicts.end() - 12, verdicts.end(), pruned), 8) << enum_name(method);
+    EXPECT_LE(std::count_if(verdicts.begin(), verdicts.end() - 12, pruned), 4) << enum_name(method);
+  }
+}
+
+TEST(JudgeEdges, WarnsOfImpreciseValues) {
+  // Affinities of 1e-9 beside an absolute tolerance of 1e-9.
+  const auto path = path_graph(30);
+  std::vector<WeightedEdge> edges(path.edges().begin(), path.edges().end());
+  edges.push_back({0, 29, 1.0});
+  const auto result = judge_edges({30, edges}, {.method = EdgeScore::affinity, .scale = 0.1});
+  ASSERT_EQ(result.warnings.size(), 1u);
+  EXPECT_NE(result.warnings[0].find("of 30 heat affinities have bounds wider than 1e-6 relative"),
+            std::string::npos)
+      << result.warnings[0];
+  const auto few = judge_edges(complete_graph(6), {.method = EdgeScore::resistance});
+  EXPECT_TRUE(few.warnings.empty());
 }
 
 /// Points on a sheet, joined to their nearest neighbours; its layers, rolled up, are `layer` of
@@ -371,7 +429,7 @@ TEST(JudgeEdges, EmptyGraphAndBadOptions) {
   EXPECT_THROW(judge_edges(path_graph(3), {.rounds = 0}), InvalidArgument);
   EXPECT_THROW(judge_edges(path_graph(3), {.chance = 1.0}), InvalidArgument);
   EXPECT_THROW(judge_edges(path_graph(3), {.scale = 0.0}), InvalidArgument);
-  EXPECT_THROW(judge_edges(path_graph(3), {.konst = std::nan("")}), InvalidArgument);
+  EXPECT_THROW(judge_edges(path_graph(3), {.konst = {std::nan("")}}), InvalidArgument);
   EXPECT_THROW(judge_edges(path_graph(3), {.tolerance = 0.0}), InvalidArgument);
   EXPECT_THROW(judge_edges(path_graph(3), {}, {}, {.threads = -1}), InvalidArgument);
 }

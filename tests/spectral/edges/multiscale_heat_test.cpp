@@ -72,7 +72,7 @@ TEST(MultiscaleHeat, IsAlgorithm1OfADenseOracle) {
     const auto found = multiscale_heat(graph, candidates,
                                        {.scales = scales, .konst = {konst}, .tolerance = 1e-12});
     const auto verdicts = judge_edges(graph, {.method = EdgeScore::heat_multiscale,
-                                              .konst = konst,
+                                              .konst = {konst},
                                               .scales = scales,
                                               .tolerance = 1e-12})
                               .verdicts;
@@ -86,7 +86,7 @@ TEST(MultiscaleHeat, IsAlgorithm1OfADenseOracle) {
 
 TEST(MultiscaleHeat, TrustedEdgesStayAndCountInNoThreshold) {
   const auto graph = grid_with_shortcuts();
-  JudgeEdgesOptions options = {.method = EdgeScore::heat_multiscale, .konst = 0.5};
+  JudgeEdgesOptions options = {.method = EdgeScore::heat_multiscale, .konst = {0.5}};
   for (Index e = 0; e < grid_graph(12, 12).edge_count(); ++e) options.trusted.push_back(e);
   const auto verdicts = judge_edges(graph, options).verdicts;
   for (const Index e : options.trusted) EXPECT_EQ(verdicts[e].stage, "trusted");

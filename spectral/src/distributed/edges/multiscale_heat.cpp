@@ -45,7 +45,8 @@ class OneRank {
   }
 
   /// Mean and deviation are sums over ranks; the other rules look at all distances at once.
-  Threshold threshold(const std::vector<double>& distances, const ThresholdOptions& rule) const {
+  Threshold threshold(const std::vector<double>& distances, const std::vector<std::size_t>&,
+                      const ThresholdOptions& rule) const {
     if (rule.rule == ThresholdRule::mean_sigma) return by_deviation(distances, rule.konst);
     return find_threshold(detail::concatenate(comm(), distances), rule);
   }

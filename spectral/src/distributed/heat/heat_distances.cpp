@@ -63,9 +63,11 @@ void summarise(const detail::Comm& comm, const HeatGoal& goal, HeatDistanceResul
     const auto& value = result.values[k];
     result.widest = std::max(result.widest, value.width());
     if (!goal.reached(value, k % result.scales.size())) ++result.unconverged;
+    if (!is_precise(value)) ++result.imprecise;
   }
   result.widest = detail::most(comm, result.widest);
   result.unconverged = detail::sum(comm, result.unconverged);
+  result.imprecise = detail::sum(comm, result.imprecise);
 }
 
 }  // namespace

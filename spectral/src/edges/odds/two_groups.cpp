@@ -54,7 +54,16 @@ struct Block {
   }
 };
 
-/// Pools neighbours until the false share rises strictly with the score.
+/// Appends a block of higher scores, and pools until the false share rises strictly with the score.
+void pool(Block block, std::vector<Block>& blocks) {
+  while (!blocks.empty() && blocks.back().suspicious_as(block)) {
+    block.scores += blocks.back().scores;
+    block.nulls += blocks.back().nulls;
+    blocks.pop_back();
+  }
+  blocks.push_back(block);
+}
+
 std::vector<Block> regress(const std::vector<double>& scores,
                            const std::vector<double>& null_scores, double false_count) {
   const double weight = false_count / static_cast<double>(null_scores.size());
@@ -66,14 +75,19 @@ std::vector<Block> regress(const std::vector<double>& scores,
     Block block{null_first ? null_scores[f] : scores[s], 0.0, 0.0};
     for (; s < scores.size() && scores[s] == block.last; ++s) block.scores += 1.0;
     for (; f < null_scores.size() && null_scores[f] == block.last; ++f) block.nulls += weight;
-    while (!blocks.empty() && blocks.back().suspicious_as(block)) {
-      block.scores += blocks.back().scores;
-      block.nulls += blocks.back().nulls;
-      blocks.pop_back();
-    }
-    blocks.push_back(block);
+    pool(block, blocks);
   }
   return blocks;
+}
+
+std::vector<double> truth_of(std::span<const double> scores, const std::vector<Block>& blocks) {
+  std::vector<double> truth;
+  for (const double score : scores) {
+    const auto block = std::lower_bound(blocks.begin(), blocks.end(), score,
+                                        [](const Block& b, double x) { return b.last < x; });
+    truth.push_back(std::max(0.0, 1.0 - block->nulls / block->scores));
+  }
+  return truth;
 }
 
 }  // namespace
@@ -87,12 +101,25 @@ TwoGroups separate_groups(std::span<const double> scores, std::span<const double
   const auto sorted_null = sorted_copy(null_scores);
   groups.false_count = estimate_false(sorted, sorted_null, most_false);
   if (groups.false_count == 0.0) return groups;
-  const auto blocks = regress(sorted, sorted_null, groups.false_count);
-  for (std::size_t k = 0; k < scores.size(); ++k) {
-    const auto block = std::lower_bound(blocks.begin(), blocks.end(), scores[k],
-                                        [](const Block& b, double x) { return b.last < x; });
-    groups.truth[k] = std::max(0.0, 1.0 - block->nulls / block->scores);
+  groups.truth = truth_of(scores, regress(sorted, sorted_null, groups.false_count));
+  return groups;
+}
+
+TwoGroups calibrate(std::span<const double> scores, std::span<const double> truth) {
+  TwoGroups groups;
+  auto order = by_suspicion(scores);
+  std::ranges::reverse(order);
+  std::vector<Block> blocks;
+  for (std::size_t k = 0; k < order.size();) {
+    Block block{scores[order[k]], 0.0, 0.0};
+    for (; k < order.size() && scores[order[k]] == block.last; ++k) {
+      block.scores += 1.0;
+      block.nulls += 1.0 - truth[order[k]];
+    }
+    groups.false_count += block.nulls;
+    pool(block, blocks);
   }
+  groups.truth = truth_of(scores, blocks);
   return groups;
 }
 
@@ -111,6 +138,21 @@ double rejection_threshold(std::span<const double> scores, const TwoGroups& grou
   while (rejected < most && groups.truth[order[rejected]] < chance) ++rejected;
   if (rejected == 0) return std::numeric_limits<double>::infinity();
   return rejected < order.size() ? scores[order[rejected]] : 0.0;
+}
+
+double threshold_of_best_f(std::span<const double> scores, const TwoGroups& groups, double chance) {
+  const auto order = by_suspicion(scores);
+  double threshold = std::numeric_limits<double>::infinity(), best = 0.0, found = 0.0;
+  for (std::size_t k = 0; k < order.size() && groups.truth[order[k]] < chance; ++k) {
+    found += 1.0 - groups.truth[order[k]];
+    const bool last = k + 1 == order.size();
+    if (!last && scores[order[k + 1]] == scores[order[k]]) continue;
+    const double f = 2.0 * found / (static_cast<double>(k + 1) + groups.false_count);
+    if (f <= best) continue;
+    best = f;
+    threshold = last ? -std::numeric_limits<double>::infinity() : scores[order[k + 1]];
+  }
+  return threshold;
 }
 
 }  // namespace isotherm::spectral::detail

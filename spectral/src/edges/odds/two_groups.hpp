@@ -26,6 +26,11 @@ struct TwoGroups {
 TwoGroups separate_groups(std::span<const double> scores, std::span<const double> null_scores,
                           double most_false = 1.0);
 
+/// What scores say of edges of which something else has told how likely each is a true one: the
+/// probability as a function of the score that never rises with it and is nearest to what was told
+/// (isotonic regression). O(q log q).
+TwoGroups calibrate(std::span<const double> scores, std::span<const double> truth);
+
 /// Places of scores, from the largest on.
 std::vector<Index> by_suspicion(std::span<const double> scores);
 
@@ -33,5 +38,11 @@ std::vector<Index> by_suspicion(std::span<const double> scores);
 /// more of them than there are false ones by the estimate, so that one expects to reject as many
 /// true ones as one keeps false ones. Infinite if there are none.
 double rejection_threshold(std::span<const double> scores, const TwoGroups& groups, double chance);
+
+/// Scores above this, of those less likely true than `chance`, are to be taken for false ones where
+/// that gives the highest F to be expected: the harmonic mean of how many of the rejected are false
+/// and how many of the false are rejected. Infinite if there are none. Unlike rejection_threshold()
+/// for scores of which many are equal.
+double threshold_of_best_f(std::span<const double> scores, const TwoGroups& groups, double chance);
 
 }  // namespace isotherm::spectral::detail

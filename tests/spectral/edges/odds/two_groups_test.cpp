@@ -81,5 +81,26 @@ TEST(TwoGroups, RejectsNoMoreThanThereAreFalseOnes) {
   EXPECT_TRUE(std::isinf(rejection_threshold({}, {}, 0.7)));
 }
 
+TEST(TwoGroups, CalibratesAScoreByProbabilitiesFromElsewhere) {
+  const std::vector<double> scores = {1.0, 2.0, 3.0, 3.0, 4.0, 5.0};
+  const std::vector<double> truth = {1.0, 0.8, 1.0, 0.6, 0.1, 0.3};
+  const auto groups = calibrate(scores, truth);
+  EXPECT_NEAR(groups.false_count, 2.2, 1e-12);
+  // 2 and both 3 are pooled with each other, and so are 4 and 5.
+  const std::vector<double> expected = {1.0, 0.8, 0.8, 0.8, 0.2, 0.2};
+  for (std::size_t k = 0; k < scores.size(); ++k) EXPECT_NEAR(groups.truth[k], expected[k], 1e-12);
+}
+
+TEST(TwoGroups, TheThresholdOfTheBestFTakesEqualScoresTogether) {
+  const std::vector<double> scores = {5.0, 5.0, 5.0, 4.0, 1.0, 1.0};
+  const TwoGroups groups{{0.2, 0.2, 0.2, 0.4, 0.9, 0.9}, 3.2};
+  // F of three rejected: 2 * 2.4 / 6.2; of four: 2 * 3 / 7.2, the highest.
+  EXPECT_EQ(threshold_of_best_f(scores, groups, 0.8), 1.0);
+  EXPECT_EQ(threshold_of_best_f(scores, groups, 0.3), 4.0);
+  EXPECT_TRUE(std::isinf(threshold_of_best_f(scores, groups, 0.1)));
+  const TwoGroups all{{0.1, 0.1}, 1.8};
+  EXPECT_LT(threshold_of_best_f(std::vector{2.0, 2.0}, all, 0.8), 2.0);
+}
+
 }  // namespace
 }  // namespace isotherm::spectral::detail

@@ -51,7 +51,7 @@ constexpr std::array<EnumName<ControlGroup>, 2> enum_names(ControlGroup) {
 
 /// Where scores part true edges from false ones.
 enum class EdgeThreshold {
-  control,     ///< where an edge is more likely one of the control group than a true one
+  control,     ///< where edges of that score are false by all that heat measures of them
   mean_sigma,  ///< the others as ThresholdRule has them
   otsu,
   mixture,
@@ -66,6 +66,9 @@ constexpr std::array<EnumName<EdgeThreshold>, 5> enum_names(EdgeThreshold) {
            {EdgeThreshold::gap, "gap"}}};
 }
 
+/// Standard deviations above the mean where the mean-sigma rule is asked for without a konst.
+inline constexpr double kDefaultKonst = 3.0;
+
 struct JudgeEdgesOptions {
   EdgeScore method = EdgeScore::heat;
   /// Heat: how often the edges are judged, each time in the graph weighted by the
@@ -74,20 +77,20 @@ struct JudgeEdgesOptions {
   /// The pairs that edges are compared with. `near` finds short circuits that run
   /// side by side, at the price of a few more true edges.
   ControlGroup control = ControlGroup::anywhere;
-  /// An edge is pruned where it is less likely than this to be a true one, but no more edges are
-  /// than there are false ones by the estimate; in (0, 1). Less prunes less; with 0.7 precision
+  /// Heat: an edge is pruned where it is less likely than this to be a true one, but no more edges
+  /// are than there are false ones by the estimate; in (0, 1). Less prunes less; with 0.7 precision
   /// and recall are about equal on Swiss rolls.
   double chance = 0.7;
   /// Affinity: diffusion time t of exp(-tL), in units of 1 / weight; finite, > 0.
   /// About one over the weight of a typical edge looks a few hops far.
   double scale = 1.0;
-  /// How the threshold is found from the scores, for all methods but heat and rank, which compare
-  /// with the control group always.
+  /// How the threshold is found from the scores, for all methods but heat, which always goes by the
+  /// control group.
   EdgeThreshold threshold = EdgeThreshold::control;
-  /// Standard deviations above the mean, for the mean-sigma rule, which heat-multiscale uses
-  /// unless another one is named; finite. The paper has 0 to 4; 1 takes about one edge in six at
-  /// every scale, whether any is false or not.
-  double konst = 3.0;
+  /// Standard deviations above the mean, for the mean-sigma rule: one value, or for heat-multiscale
+  /// one a scale, which uses that rule if any is named; finite. None: kDefaultKonst. The paper has
+  /// 0 to 4; 1 takes about one edge in six at every scale, whether any is false or not.
+  std::vector<double> konst;
   /// Heat-multiscale: diffusion times, descending, in units of 1 / weight; finite, >= 0. Empty:
   /// automatic_scales().
   std::vector<double> scales;
@@ -105,10 +108,12 @@ void visit_fields(Options& options, Visitor&& visit) {
   visit("method", options.method, "what an edge is judged by");
   visit("rounds", options.rounds, "heat: how often edges are judged", closed(1, 10));
   visit("control", options.control, "pairs that false edges resemble");
-  visit("chance", options.chance, "prune what is less likely true", open(0, 1));
+  visit("chance", options.chance, "heat: prune what is less likely true", open(0, 1));
   visit("scale", options.scale, "affinity: diffusion time", left_open(0, 1e12));
-  visit("threshold", options.threshold, "but for heat, rank: what scores are compared with");
-  visit("konst", options.konst, "deviations above the mean, for mean-sigma", closed(-1e6, 1e6));
+  visit("threshold", options.threshold, "but for heat: what scores are compared with");
+  visit("konst", options.konst,
+        "deviations above the mean, for mean-sigma; heat-multiscale: one or one a scale",
+        or_none(closed(-1e6, 1e6)));
   visit("scales", options.scales,
         "heat-multiscale: diffusion times, descending; none: by the graph",
         or_none(closed(0, 1e12)));
@@ -128,21 +133,22 @@ struct JudgeEdgesResult {
 /// the graph itself says which they are, whatever the weights. So are edges about which nothing
 /// is known (stage "no evidence"). Self-loops are kept. Parallel edges are judged as one.
 ///
-/// The threshold is where an edge is less likely than `chance` to be a true one: one minus the
-/// local false discovery rate of its score against pairs of vertices that no edge joins, the
-/// control group (docs/concepts/edge-affinity.md).
+/// Heat prunes an edge that is less likely than `chance` to be a true one, but no more of them than
+/// are false by its own estimate. The thresholds of the other methods are where the highest F is to
+/// be expected by the probabilities that heat gives (docs/concepts/edge-affinity.md); it costs as
+/// much as heat does. Any other EdgeThreshold goes by the scores alone.
 ///
 /// Heat finds the heat affinity of an edge's ends in the normalised graph without the edge, from
 /// walks of a few steps, and takes as the probability p that the edge is a true one its local false
-/// discovery rate against random pairs of vertices; edges are then judged again in the graph
-/// weighted by p. Last, affinity, steps between the ends, common neighbours and both ends' numbers
-/// of neighbours are weighed by a regression of random pairs against edges, and where the graph is
-/// nearly planar and has up to some ten thousand edges what each edge crosses is, too. The score is
-/// the log odds of false against true, the least being 0. All is done a second time with the most
-/// suspicious edges left out of a round; the answer of the higher evidence counts. A chain of edges
-/// through vertices of degree two is judged as one, of which one at most is taken to be false. Time
-/// n times the edges within a few steps of a vertex; the other methods' costs are those of their
-/// functions.
+/// discovery rate against pairs of vertices that no edge joins, the control group; edges are then
+/// judged again in the graph weighted by p. Last, affinity, steps between the ends, common
+/// neighbours and both ends' numbers of neighbours are weighed by a regression of random pairs
+/// against edges, and where the graph is nearly planar and has up to some ten thousand edges what
+/// each edge crosses is, too. The score is the log odds of false against true, the least being 0.
+/// All is done a second time with the most suspicious edges left out of a round; the answer of the
+/// higher evidence counts. A chain of edges through vertices of degree two is judged as one, of
+/// which one at most is taken to be false. Time n times the edges within a few steps of a vertex;
+/// the other methods' costs are those of their functions.
 ///
 /// Rank is for vertices of known `positions` (dimension x vertices), which the other methods do not
 /// use. It scores an edge by how many vertices are nearer to one of its ends than the other end is,

@@ -56,6 +56,7 @@ struct MultiscaleHeat {
   /// rounds x candidates; NaN once it is pruned.
   std::vector<std::vector<double>> distances;
   std::int64_t unconverged = 0;  ///< distances whose certified bracket is wider than asked for
+  std::int64_t imprecise = 0;    ///< distances not known to a millionth of themselves
   double widest_bracket = 0.0;
 };
 

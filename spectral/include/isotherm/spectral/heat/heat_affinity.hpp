@@ -17,6 +17,7 @@ struct HeatAffinityResult {
   std::vector<double> scales;
   std::vector<CertifiedValue> values;  ///< pairs x scales
   double widest = 0.0;                 ///< largest width of a bracket
+  std::int64_t imprecise = 0;          ///< values not known to a millionth of themselves
   double seconds = 0.0;
 
   const CertifiedValue& at(std::size_t pair, std::size_t scale) const {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "isotherm/base/options.hpp"
@@ -61,6 +62,10 @@ void visit_fields(Options& options, Visitor&& visitor) {
 
 /// Whether a value is known to a millionth of itself.
 inline bool is_precise(const CertifiedValue& value) { return value.width() <= 1e-6 * value.lower; }
+
+/// "12 of 300 heat distances have bounds wider than 1e-6 relative", to warn with where a part of
+/// `all` values is imprecise.
+std::string words_of_imprecise(std::int64_t imprecise, std::int64_t all, std::string_view what);
 
 /// Heat distances of `pairs` at `scales`, row-major: pairs x scales.
 struct HeatDistanceResult {

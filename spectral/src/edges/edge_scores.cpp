@@ -1,4 +1,4 @@
-#include "edges/pair_scores.hpp"
+#include "edges/edge_scores.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,17 +6,15 @@
 #include <numeric>
 #include <utility>
 
-#include "edges/thin_out.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/spectral/heat/heat_affinity.hpp"
 #include "isotherm/spectral/resistance/effective_resistance.hpp"
-#include "isotherm/spectral/sparse/laplacian_solver.hpp"
 
 namespace isotherm::spectral {
 namespace {
 
+using detail::EdgeScores;
 using detail::kUnknownScore;
-using detail::PairScores;
 
 // Ascending, each once, without the vertex itself.
 std::vector<Index> sorted_neighbours(const WeightedGraph& graph, Index vertex) {
@@ -58,19 +56,17 @@ double neighbour_score(const NeighbourCounts& counts, EdgeScore method) {
   return 1.0 / (1.0 + static_cast<double>(counts.common));
 }
 
-PairScores neighbour_scores(const WeightedGraph& graph, const std::vector<VertexPair>& pairs,
-                            EdgeScore method) {
+EdgeScores neighbour_scores(const WeightedGraph& graph, EdgeScore method) {
   std::vector<std::vector<Index>> neighbours;
   for (Index v = 0; v < graph.vertex_count(); ++v) {
     neighbours.push_back(sorted_neighbours(graph, v));
   }
-  const auto score = [&](Index from, Index to, bool joined) {
-    return neighbour_score(count_neighbours(neighbours[from], neighbours[to], joined), method);
-  };
-  PairScores scores;
-  for (const auto& [from, to, weight] : graph.edges())
-    scores.edges.push_back(score(from, to, true));
-  for (const auto& [from, to] : pairs) scores.pairs.push_back(score(from, to, false));
+  EdgeScores scores;
+  for (const auto& [from, to, weight] : graph.edges()) {
+    const bool joined = from != to;
+    scores.scores.push_back(
+        neighbour_score(count_neighbours(neighbours[from], neighbours[to], joined), method));
+  }
   return scores;
 }
 
@@ -85,15 +81,19 @@ std::vector<double> affinity_scores(const std::vector<CertifiedValue>& affinitie
   return scores;
 }
 
-PairScores affinity_scores(const WeightedGraph& graph, const std::vector<VertexPair>& pairs,
-                           const JudgeEdgesOptions& options, const RunContext& run) {
+EdgeScores affinity_scores(const WeightedGraph& graph, const JudgeEdgesOptions& options,
+                           const RunContext& run) {
   std::vector<Index> edges(graph.edges().size());
   std::iota(edges.begin(), edges.end(), 0);
-  const std::vector<double> scales = {options.scale};
-  const HeatDistanceOptions heat = {
-      .tolerance = options.tolerance, .threads = run.threads, .progress = run.progress};
-  return {affinity_scores(leave_one_out_affinities(graph, edges, scales, heat).values),
-          affinity_scores(heat_affinities(graph, detail::thin_out(pairs), scales, heat).values)};
+  const auto affinities = leave_one_out_affinities(
+      graph, edges, std::vector{options.scale},
+      {.tolerance = options.tolerance, .threads = run.threads, .progress = run.progress});
+  EdgeScores scores{affinity_scores(affinities.values), {}};
+  if (affinities.imprecise > 0) {
+    scores.warnings.push_back(
+        words_of_imprecise(affinities.imprecise, graph.edge_count(), "heat affinities"));
+  }
+  return scores;
 }
 
 std::string words_without_bound(const ResistanceResult& resistances) {
@@ -113,34 +113,24 @@ double resistance_of_ends(double first_degree, double second_degree) {
   return 1.0 / first_degree + 1.0 / second_degree;
 }
 
-PairScores resistance_scores(const WeightedGraph& graph, const std::vector<VertexPair>& pairs,
-                             const RunContext& run) {
-  constexpr std::size_t kMostSolves = 1000;
-  PairScores scores;
-  auto resistances = edge_resistances(graph);
-  if (!std::isfinite(resistances.bound))
-    scores.warnings.push_back(words_without_bound(resistances));
+/// What is not known of resistances to a millionth of them; nothing if all is.
+std::vector<std::string> doubts(const ResistanceResult& resistances, Index edge_count) {
+  constexpr double kPrecise = 1e-6;
+  if (!std::isfinite(resistances.bound)) return {words_without_bound(resistances)};
+  if (resistances.bound <= kPrecise) return {};
+  return {words_of_imprecise(edge_count, edge_count, "effective resistances")};
+}
+
+EdgeScores resistance_scores(const WeightedGraph& graph) {
+  EdgeScores scores;
+  const auto resistances = edge_resistances(graph);
+  scores.warnings = doubts(resistances, graph.edge_count());
   const auto degrees = weighted_degrees(graph);
   for (Index e = 0; e < graph.edge_count(); ++e) {
     const auto& [from, to, weight] = graph.edge(e);
     const double all = resistances.without[e];
     const double ends = resistance_of_ends(degrees[from] - weight, degrees[to] - weight);
-    scores.edges.push_back(std::isfinite(all) ? std::max(0.0, all - ends) : all);
-  }
-  LaplacianSolver solver{Laplacian(graph)};
-  const auto component = connected_components(graph).label;
-  Eigen::VectorXd current = Eigen::VectorXd::Zero(graph.vertex_count());
-  for (const auto& [from, to] : detail::thin_out(pairs, kMostSolves)) {
-    if (component[from] != component[to]) continue;
-    if (run.progress && !run.progress({"resistances", scores.pairs.size(), kMostSolves})) {
-      throw Cancelled();
-    }
-    current[from] = 1.0;
-    current[to] = -1.0;
-    const Eigen::VectorXd potential = solver.solve(current);
-    scores.pairs.push_back(potential[from] - potential[to] -
-                           resistance_of_ends(degrees[from], degrees[to]));
-    current[from] = current[to] = 0.0;
+    scores.scores.push_back(std::isfinite(all) ? std::max(0.0, all - ends) : all);
   }
   return scores;
 }
@@ -155,22 +145,22 @@ double jaccard_index(const WeightedGraph& graph, Index edge) {
 
 namespace detail {
 
-PairScores score_pairs(const WeightedGraph& graph, const std::vector<VertexPair>& pairs,
-                       const JudgeEdgesOptions& options, const RunContext& run) {
+EdgeScores score_edges(const WeightedGraph& graph, const JudgeEdgesOptions& options,
+                       const RunContext& run) {
   switch (options.method) {
     case EdgeScore::heat:
     case EdgeScore::heat_multiscale:
     case EdgeScore::rank:
       break;
     case EdgeScore::affinity:
-      return affinity_scores(graph, pairs, options, run);
+      return affinity_scores(graph, options, run);
     case EdgeScore::resistance:
-      return resistance_scores(graph, pairs, run);
+      return resistance_scores(graph);
     case EdgeScore::jaccard:
     case EdgeScore::common_neighbours:
-      return neighbour_scores(graph, pairs, options.method);
+      return neighbour_scores(graph, options.method);
   }
-  throw InvalidArgument("method", "is not a method of pairs");
+  throw InvalidArgument("method", "has no score of its own");
 }
 
 }  // namespace detail

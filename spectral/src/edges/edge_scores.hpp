@@ -6,14 +6,12 @@
 
 #include "isotherm/base/run_context.hpp"
 #include "isotherm/spectral/edges/judge_edges.hpp"
-#include "isotherm/spectral/heat/heat_distance.hpp"
 
 namespace isotherm::spectral::detail {
 
-/// Scores of edges and of pairs that no edge joins; larger is more suspicious.
-struct PairScores {
-  std::vector<double> edges;
-  std::vector<double> pairs;
+/// Scores of edges; larger is more suspicious.
+struct EdgeScores {
+  std::vector<double> scores;
   std::vector<std::string> warnings;  ///< what the scores cannot be trusted for
 };
 
@@ -21,10 +19,9 @@ struct PairScores {
 inline constexpr double kUnknownScore = std::numeric_limits<double>::infinity();
 
 /// By jaccard, common neighbours, affinity or resistance, of every edge of a simple graph
-/// without itself, and of the pairs; those of a few thousand at most by the last two, for the
-/// time they take. Unknown are ends that nothing else joins and ends without other neighbours.
+/// without itself. Unknown are ends that nothing else joins and ends without other neighbours.
 /// @throws InvalidArgument for another method; NumericalError, Cancelled
-PairScores score_pairs(const WeightedGraph& graph, const std::vector<VertexPair>& pairs,
-                       const JudgeEdgesOptions& options, const RunContext& run);
+EdgeScores score_edges(const WeightedGraph& graph, const JudgeEdgesOptions& options,
+                       const RunContext& run);
 
 }  // namespace isotherm::spectral::detail
