@@ -75,14 +75,14 @@ void Assessment<Pose>::rescale(const Shapes<Pose>& shapes) {
   found_.graph = std::make_shared<ScaledGraph<Pose>>(objective_.scaled(shapes));
   found_.shapes = shapes;
   estimate_.use(found_.graph->reduced);
+  found_.held.clear();
 }
 
 template <class Pose>
 void Assessment<Pose>::find_peak(Explanation<Pose>& now) {
   weigh_new(now);
   estimate_.weigh_loops(now.weights);
-  const auto weigh_again = [&] { return reweigh(now); };
-  estimate_.settle(now.accepted, now.scale, kMostSteps, weigh_again, kSameWeight);
+  estimate_.settle(now.accepted, now.scale, kMostSteps, [&] { return reweigh(now); });
 }
 
 // Loops accepted since the last assessment, by what the others said of them.
@@ -97,10 +97,10 @@ void Assessment<Pose>::weigh_new(Explanation<Pose>& now) {
   }
 }
 
-// By how much the log of a weight changed at most.
+// Whether any weight changed.
 template <class Pose>
-double Assessment<Pose>::reweigh(Explanation<Pose>& now) {
-  double most = 0.0;
+bool Assessment<Pose>::reweigh(Explanation<Pose>& now) {
+  bool changed = false;
   now.found = {};
   now.scale_evidence = 0.0;
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
@@ -110,13 +110,13 @@ double Assessment<Pose>::reweigh(Explanation<Pose>& now) {
     const double chi2 =
         r.dot(link.information * r) / now.scale.loops + uncertainty(now, static_cast<Index>(k));
     const ErrorScale scale = error_scale(found_.mixture, chi2, Pose::kDof);
-    most = std::max(most, std::abs(std::log(scale.weight / now.weights[k])));
+    changed = changed || std::abs(std::log(scale.weight / now.weights[k])) > kSameWeight;
     now.weights[k] = scale.weight;
     now.scale_evidence += scale.evidence;
     for (std::size_t j = 0; j < kScaleCount; ++j) now.found.loops[j] += scale.probability[j];
   }
   estimate_.weigh_loops(now.weights);
-  return most;
+  return changed;
 }
 
 // What is expected of the squared length of the error beyond that at the peak, in deviations: P is

@@ -64,7 +64,7 @@ class Assessment {
   void rescale(const Shapes<Pose>& shapes);
   void find_peak(Explanation<Pose>& now);
   double evidence(const Explanation<Pose>& now) const;
-  double reweigh(Explanation<Pose>& now);
+  bool reweigh(Explanation<Pose>& now);
   double uncertainty(const Explanation<Pose>& now, Index loop) const;
   void weigh_new(Explanation<Pose>& now);
   bool bounds(const Explanation<Pose>& now) const;

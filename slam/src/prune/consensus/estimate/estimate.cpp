@@ -48,36 +48,29 @@ void Estimate<Pose>::linearize(const CovarianceScale& scale) {
   if (pace_) pace_(static_cast<double>(equations_->constraint_count()));
 }
 
-// The squared length of the step in deviations (the Newton decrement).
+// Whether it was one that does not matter. The Newton decrement is the squared length of the
+// step in deviations.
 template <class Pose>
-double Estimate<Pose>::step() {
+bool Estimate<Pose>::step() {
   const Eigen::VectorXd move = equations_->hessian().solve(-equations_->gradient());
+  const double decrement = -move.dot(equations_->gradient());
   equations_->retract(move, poses_);
-  return -move.dot(equations_->gradient());
+  return decrement < kSettled * kSettled * static_cast<double>(1 + used_loops_.size());
 }
 
 template <class Pose>
 void Estimate<Pose>::update(const std::vector<bool>& accepted, const CovarianceScale& scale,
                             int max_steps) {
-  settle(
-      accepted, scale, max_steps, [] { return 0.0; }, 0.0);
+  settle(accepted, scale, max_steps, [] { return false; });
 }
 
-// The factor of the last step serves as that at the end where neither the step nor the weights
-// changed anything to speak of.
 template <class Pose>
 void Estimate<Pose>::settle(const std::vector<bool>& accepted, const CovarianceScale& scale,
-                            int max_steps, const std::function<double()>& reweigh, double same) {
+                            int max_steps, const std::function<bool()>& reweigh) {
   lay_out(accepted);
-  constexpr double kMatters = kSettled * kSettled;
-  const double enough = kMatters * static_cast<double>(1 + used_loops_.size());
   for (int k = 0; k < max_steps; ++k) {
     linearize(scale);
-    const double length = step();
-    if (length >= enough) continue;
-    const double change = reweigh();
-    if (length < kMatters && change == 0.0) return;
-    if (change <= same) return linearize(scale);
+    if (step() && !reweigh()) break;
   }
   reweigh();
   linearize(scale);

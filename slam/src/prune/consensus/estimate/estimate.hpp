@@ -49,9 +49,9 @@ class Estimate {
   void update(const std::vector<bool>& accepted, const CovarianceScale& scale, int max_steps);
 
   /// The same, until weights settle too: whenever poses have, `reweigh` may call weigh_loops(),
-  /// and says by how much the log of any changed at most; no more than `same` does not matter.
+  /// and says whether any weight changed.
   void settle(const std::vector<bool>& accepted, const CovarianceScale& scale, int max_steps,
-              const std::function<double()>& reweigh, double same);
+              const std::function<bool()>& reweigh);
 
   /// From the next step on the information of each loop is multiplied by its entry, if any.
   void weigh_loops(std::vector<double> weights) { weights_ = std::move(weights); }
@@ -98,7 +98,7 @@ class Estimate {
  private:
   void lay_out(const std::vector<bool>& accepted);
   void linearize(const CovarianceScale& scale);
-  double step();
+  bool step();
   PoseGraph<Pose> used_links(const std::vector<bool>& accepted);
   void join_components(const PoseGraph<Pose>& used);
 
