@@ -91,8 +91,8 @@ class OnlineConsensus {
   /// The verdict on every loop so far, as of now.
   spectral::EdgeVerdicts verdicts() const;
 
-  /// All vertices and edges so far; where there are loops, with the current estimate as poses, which
-  /// takes one solution of the map where the search has not seen all loops yet.
+  /// All vertices and edges so far; where there are loops, with the current estimate as poses,
+  /// which takes one solution of the map where the search has not seen all loops yet.
   PoseGraph<Pose> graph() const;
 
   /// The same as added, without an estimate: what a file of the same edges holds.
