@@ -40,8 +40,9 @@ def draw(rows, path):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    figure, axes = plt.subplots(1, len(rows), figsize=(8, 3.2), constrained_layout=True)
-    for axis, row in zip(axes, rows, strict=True):
+    figure, axes = plt.subplots(1, len(rows), figsize=(4.0 * len(rows), 3.2), squeeze=False,
+                                constrained_layout=True)
+    for axis, row in zip(axes[0], rows, strict=True):
         poses = [point["poses"] for point in row["points"]]
         for key, colour, label in (("solve", "#000000", "solving the map so far"),
                                    ("worst", "#D55E00", "worst call"), ("p99", "#E69F00", "99 % of calls"),
@@ -51,7 +52,7 @@ def draw(rows, path):
         axis.set_title(row["graph"])
         axis.set_xlabel("poses")
         axis.set_ylabel("CPU ms")
-    axes[0].legend(fontsize=7)
+    axes[0, 0].legend(fontsize=7)
     with matplotlib.rc_context({"svg.hashsalt": "isotherm", "svg.fonttype": "none"}):
         figure.savefig(path, metadata={"Date": None})
     text = path.read_text(encoding="utf-8")
