@@ -9,7 +9,7 @@ from support.online_peers import prefixes
 from support.runs import read_csv
 from support.streams import prepare
 
-GRAPHS = [("city10000", 1000), ("sphere2500", 250)]  # and poses from point to point
+GRAPHS = [("ringCity", 250), ("sphere2500", 250)]  # and poses from point to point
 
 
 def measure(command, data, graph, step):
