@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -80,10 +82,15 @@ struct ConvertVerb : OptionVerb<NoOptions> {
   std::string to;
   std::string axes;
   std::string labels;
+  std::string known_labels;
+  std::string truth;
   bool in_time_order = false;
 
   int run() {
     if (resolve_or_dump()) return kOk;
+    if (!known_labels.empty() && labels.empty()) {
+      throw InvalidArgument("--known-labels", "goes with --labels");
+    }
     const FileFormat target = target_format();
     const ReadReport report = convert(target);
     for (const auto& loss : losses_) warn(flags, loss);
@@ -169,10 +176,10 @@ struct ConvertVerb : OptionVerb<NoOptions> {
     if (!axes.empty() && slam::content_of(target) != FileContent::trajectory) {
       throw InvalidArgument("--axes", "are turned in trajectories only");
     }
-    if (!labels.empty()) write_known_labels(file);
-    if (in_time_order) {
-      std::visit([](auto& graph) { graph = in_replay_order(std::move(graph)); }, file.graph);
-    }
+    auto rows = labels.empty() ? std::vector<slam::EdgeLabel>() : known_labels_of(file);
+    if (!truth.empty()) write_known_truth(file);
+    if (in_time_order) put_in_time_order(file.graph, rows);
+    if (!labels.empty()) slam::write_labels(labels, rows);
     if (target == FileFormat::g2o) {
       slam::write_g2o(output, file);
     } else if (target == FileFormat::toro) {
@@ -193,13 +200,23 @@ struct ConvertVerb : OptionVerb<NoOptions> {
     return file.report;
   }
 
-  // What an IRL file says of its loops.
-  void write_known_labels(const slam::PoseGraphFile& file) const {
+  // What a JRL file says of its poses.
+  void write_known_truth(const slam::PoseGraphFile& file) const {
+    if (!file.truth) {
+      throw InvalidArgument("--truth",
+                            "is known of JRL files that have it only, not of " + file.report.path);
+    }
+    slam::write_g2o(truth, *file.truth);
+  }
+
+  // Those of --known-labels, or what an IRL or JRL file says of its loops.
+  std::vector<slam::EdgeLabel> known_labels_of(const slam::PoseGraphFile& file) const {
+    if (!known_labels.empty()) return slam::read_labels(known_labels);
     if (file.correct.empty()) {
       throw InvalidArgument("--labels",
-                            "are known of IRL files only, not of " + file.report.format);
+                            "are known of IRL and JRL files that have them only, not of " +
+                                file.report.path + "; --known-labels tells them of other files");
     }
-    if (in_time_order) throw InvalidArgument("--labels", "count edges in the order of the input");
     std::vector<slam::EdgeLabel> rows;
     std::visit(
         [&](const auto& graph) {
@@ -210,7 +227,25 @@ struct ConvertVerb : OptionVerb<NoOptions> {
           }
         },
         file.graph);
-    slam::write_labels(labels, rows);
+    return rows;
+  }
+
+  // Labels count edges in the order of the output.
+  static void put_in_time_order(slam::AnyPoseGraph& any, std::vector<slam::EdgeLabel>& rows) {
+    const auto order = std::visit([](const auto& graph) { return replay_order(graph); }, any);
+    std::vector<std::int64_t> place(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      place[static_cast<std::size_t>(order[k])] = static_cast<std::int64_t>(k);
+    }
+    for (auto& row : rows) {
+      if (row.edge < 0 || row.edge >= static_cast<std::int64_t>(place.size())) {
+        throw InvalidArgument("--known-labels", fmt::format("has an edge {}, the graph has {}",
+                                                            row.edge, place.size()));
+      }
+      row.edge = place[static_cast<std::size_t>(row.edge)];
+    }
+    std::ranges::sort(rows, {}, &slam::EdgeLabel::edge);
+    std::visit([](auto& graph) { graph = in_replay_order(std::move(graph)); }, any);
   }
 
   ReadReport convert_trajectory(const slam::TrajectoryFile& file, FileFormat target) const {
@@ -276,7 +311,14 @@ Verb add_convert(CLI::App& root) {
                    ".kitti .euroc .pyfg .mtx .isograph)")
       ->type_name("FORMAT");
   convert->flags.outputs.add(*verb, "--labels", convert->labels,
-                             "which loops an IRL file says are true, as CSV", {".csv"});
+                             "which loops are true, as CSV: what an IRL or JRL file says, or "
+                             "--known-labels",
+                             {".csv"});
+  verb->add_option("--known-labels", convert->known_labels,
+                   "labels of the input, to be written to --labels for the edges of the output")
+      ->type_name("FILE");
+  convert->flags.outputs.add(*verb, "--truth", convert->truth,
+                             "the true poses that a JRL file has, as g2o", {".g2o"});
   verb->add_flag("--in-time-order", convert->in_time_order,
                  "write the edges of a pose graph in an order that 'follow' can replay");
   verb->add_option("--axes", convert->axes,

@@ -25,6 +25,7 @@ Verb add_manual(CLI::App& root);
 Verb add_eval(CLI::App& root);
 Verb add_eval_evidence(CLI::App& eval);
 Verb add_eval_loops(CLI::App& eval);
+Verb add_eval_online(CLI::App& eval);
 Verb add_eval_ate(CLI::App& eval);
 Verb add_eval_rpe(CLI::App& eval);
 Verb add_eval_positions(CLI::App& eval);

@@ -28,11 +28,12 @@ void EventLines::write(const std::string& line) {
   if (!*out_) throw FileError(path_, "cannot be written");
 }
 
-void EventLines::tell(const slam::LoopChange& change, std::uint64_t at) {
+void EventLines::tell(const slam::LoopChange& change, Time time) {
   const auto& verdict = change.verdict;
   const double probability = verdict.probability;
   const Json line = {{"event", change.first ? "verdict" : "change"},
-                     {"at", at},
+                     {"at", time.at},
+                     {"poses", time.poses},
                      {"edge", verdict.edge},
                      {"from", verdict.from},
                      {"to", verdict.to},
@@ -43,9 +44,15 @@ void EventLines::tell(const slam::LoopChange& change, std::uint64_t at) {
   write(line.dump());
 }
 
-void EventLines::end(const spectral::EdgeVerdicts& verdicts, std::uint64_t edges) {
+void EventLines::error(double ate, Time time) {
+  const Json line = {{"event", "error"}, {"at", time.at}, {"poses", time.poses}, {"ate", ate}};
+  write(line.dump());
+}
+
+void EventLines::end(const spectral::EdgeVerdicts& verdicts, Time time) {
   const Json line = {{"event", "end"},
-                     {"edges", edges},
+                     {"edges", time.at},
+                     {"poses", time.poses},
                      {"loops", verdicts.size()},
                      {"kept", count(verdicts, Verdict::keep)},
                      {"pruned", count(verdicts, Verdict::prune)},

@@ -15,9 +15,16 @@ class EventLines {
   /// @param path "-" for stdout, empty for none. @throws FileError
   explicit EventLines(const std::string& path);
 
-  /// `at` is the number of the edge that brought it.
-  void tell(const slam::LoopChange& change, std::uint64_t at);
-  void end(const spectral::EdgeVerdicts& verdicts, std::uint64_t edges);
+  /// When an event was: the number of the edge that brought it, and of poses that had come.
+  struct Time {
+    std::uint64_t at = 0;
+    std::uint64_t poses = 0;
+  };
+
+  void tell(const slam::LoopChange& change, Time time);
+  /// How far the estimate is from the truth.
+  void error(double ate, Time time);
+  void end(const spectral::EdgeVerdicts& verdicts, Time time);
 
  private:
   void write(const std::string& line);

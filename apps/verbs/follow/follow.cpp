@@ -1,9 +1,8 @@
-#include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <variant>
@@ -12,14 +11,16 @@
 #include <fmt/format.h>
 
 #include "console.hpp"
-#include "isotherm/base/statistics.hpp"
 #include "isotherm/base/words.hpp"
 #include "isotherm/slam/io/pose_graph_file.hpp"
 #include "isotherm/slam/io/pose_graph_stream.hpp"
 #include "isotherm/slam/online/online_consensus.hpp"
 #include "option_verb.hpp"
+#include "verbs/follow/call_times.hpp"
+#include "verbs/follow/error_track.hpp"
 #include "verbs/follow/event_lines.hpp"
 #include "verbs/follow/state_file.hpp"
+#include "verbs/input/truth_input.hpp"
 #include "verbs/prune/prune_result.hpp"
 #include "verbs/verbs.hpp"
 
@@ -36,12 +37,14 @@ struct FollowVerb : OptionVerb<OnlineOptions> {
   std::string events = "-";
   std::string state;
   std::string map;
+  std::string times;
+  GroundTruthSource truth;
   std::uint64_t every = 0;
   bool keep_ambiguous = false;
 
   int run() {
     if (resolve_or_dump()) return kOk;
-    if (map.empty() != (every == 0)) throw InvalidArgument("--every", "goes with --map");
+    check_flags();
     // What else goes to stdout has it for itself.
     if (output == "-" || verdicts == "-" || flags.json == "-") {
       if (events == "-") events.clear();
@@ -62,8 +65,20 @@ struct FollowVerb : OptionVerb<OnlineOptions> {
                           std::holds_alternative<StreamEdge<Pose2>>(*entry);
       return planar ? follow<Pose2>(stream, *entry, fixed) : follow<Pose3>(stream, *entry, fixed);
     }
-    throw ParseError({input, stream.line_number(), 0}, "",
-                     "no vertex and no edge; expected a pose graph in g2o or TORO format");
+    throw ParseError(
+        {input, stream.line_number(), 0}, "",
+        "no vertex and no edge; expected a pose graph in g2o, TORO, IRL or JRL format");
+  }
+
+  void check_flags() const {
+    if ((map.empty() && truth.path.empty()) != (every == 0)) {
+      throw InvalidArgument("--every", "goes with --map or --ground-truth");
+    }
+    if (!truth.path.empty() && input == "-") {
+      throw InvalidArgument("--ground-truth",
+                            "needs a file to follow, not stdin: true poses are "
+                            "matched with those of the whole graph");
+    }
   }
 
   template <class Pose>
@@ -85,7 +100,12 @@ class FollowVerb::Session {
         online_(state_.open<Pose>(verb.options, context(verb))) {
     // A file is followed again from its start; what is known of it is passed over.
     known_ = verb.input == "-" ? 0 : state_.entries();
-    edges_ = online_.input().constraints.size();
+    const auto known = online_.input();
+    edges_ = known.constraints.size();
+    seen_.insert(known.ids.begin(), known.ids.end());
+    if (verb.truth.path.empty()) return;
+    const auto whole = read_pose_graph(verb.input);
+    errors_.emplace(as<Pose>(whole.graph), verb.truth, verb.flags);
   }
 
   void take(const StreamEntry& entry) {
@@ -107,17 +127,20 @@ class FollowVerb::Session {
   }
 
   void finish() {
-    const auto start = std::chrono::steady_clock::now();
-    for (const auto& change : online_.finish()) events_.tell(change, edges_);
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    CallTimes took;
+    for (const auto& change : took.of(seen_.size(), [this] { return online_.finish(); })) {
+      events_.tell(change, now());
+    }
     const auto decided = online_.verdicts();
-    events_.end(decided, edges_);
     const auto graph = online_.graph();
+    if (errors_) tell_error(graph);
+    events_.end(decided, now());
     if (!verb_.output.empty()) {
       write_g2o(verb_.output, apply_verdicts(graph, decided, verb_.keep_ambiguous));
     }
     if (!verb_.verdicts.empty()) write_loop_verdicts(verb_.verdicts, decided, graph.ids);
-    summarise(decided, took.count());
+    times_.write(verb_.times);
+    summarise(decided, took.total());
   }
 
  private:
@@ -126,46 +149,53 @@ class FollowVerb::Session {
   }
 
   void add(const StreamEdge<Pose>& edge) {
-    const auto start = std::chrono::steady_clock::now();
-    const auto changes = online_.add_edge(edge.from, edge.to, edge.measured.T_from_to,
-                                          edge.measured.information, edge.measured.link);
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-    seconds_.push_back(took.count());
+    const auto changes = times_.of(seen_.size(), [&] {
+      return online_.add_edge(edge.from, edge.to, edge.measured.T_from_to,
+                              edge.measured.information, edge.measured.link);
+    });
+    seen_.insert({edge.from, edge.to});
     state_.append(online_);  // before anything is said of it
-    for (const auto& change : changes) events_.tell(change, edges_);
+    for (const auto& change : changes) events_.tell(change, now());
     ++edges_;
-    if (verb_.every > 0 && edges_ % verb_.every == 0) {
-      write_g2o(verb_.map,
-                apply_verdicts(online_.graph(), online_.verdicts(), verb_.keep_ambiguous));
-    }
+    if (verb_.every > 0 && edges_ % verb_.every == 0) tell_map();
+  }
+
+  EventLines::Time now() const { return {edges_, seen_.size()}; }
+
+  void tell_map() {
+    const auto graph = online_.graph();
+    if (errors_) tell_error(graph);
+    if (verb_.map.empty()) return;
+    write_g2o(verb_.map, apply_verdicts(graph, online_.verdicts(), verb_.keep_ambiguous));
+  }
+
+  void tell_error(const PoseGraph<Pose>& graph) {
+    if (const auto ate = errors_->ate(graph, seen_)) events_.error(*ate, now());
   }
 
   void summarise(const spectral::EdgeVerdicts& decided, double finish) const {
-    double total = 0.0;
-    for (const double seconds : seconds_) total += seconds;
-    const auto latency = [&](double share) {
-      if (seconds_.empty()) return 0.0;
-      return 1e3 * (share < 1.0 ? quantile(seconds_, share) : *std::ranges::max_element(seconds_));
-    };
     say(verb_.flags,
         fmt::format("{}, {}: {} kept, {} pruned, {} ambiguous; a call {:.2f} ms (median), {:.1f} "
                     "ms (99 %), {:.0f} ms (worst); {:.2f} s in all, and {:.2f} s to finish",
                     counted(edges_, "edge"), counted(decided.size(), "loop"),
                     count(decided, Verdict::keep), count(decided, Verdict::prune),
-                    count(decided, Verdict::ambiguous), latency(0.5), latency(0.99), latency(1.0),
-                    total, finish));
-    write_json(verb_.flags.json,
-               {{"schema", "isotherm.follow/1"},
-                {"edges", edges_},
-                {"loops", decided.size()},
-                {"kept", count(decided, Verdict::keep)},
-                {"pruned", count(decided, Verdict::prune)},
-                {"ambiguous", count(decided, Verdict::ambiguous)},
-                {"latency_ms",
-                 {{"median", latency(0.5)}, {"p99", latency(0.99)}, {"worst", latency(1.0)}}},
-                {"seconds", total},
-                {"finish_seconds", finish},
-                {"options", options_to_json(verb_.options)}});
+                    count(decided, Verdict::ambiguous), times_.wall_quantile(0.5),
+                    times_.wall_quantile(0.99), times_.wall_quantile(1.0), times_.total(), finish));
+    Json json = {{"schema", "isotherm.follow/1"},
+                 {"edges", edges_},
+                 {"loops", decided.size()},
+                 {"kept", count(decided, Verdict::keep)},
+                 {"pruned", count(decided, Verdict::prune)},
+                 {"ambiguous", count(decided, Verdict::ambiguous)},
+                 {"seconds", times_.total()},
+                 {"finish_seconds", finish},
+                 {"options", options_to_json(verb_.options)}};
+    json.update(times_.summary());
+    if (errors_) {
+      const auto mean = errors_->mean();
+      json["iate_m"] = mean ? Json(*mean) : Json();
+    }
+    write_json(verb_.flags.json, json);
   }
 
   FollowVerb& verb_;
@@ -175,7 +205,9 @@ class FollowVerb::Session {
   OnlineConsensus<Pose> online_;
   std::uint64_t known_ = 0;
   std::uint64_t edges_ = 0;
-  std::vector<double> seconds_;  // one a call
+  std::set<VertexId> seen_;  // poses that edges have named
+  CallTimes times_;
+  std::optional<ErrorTrack<Pose>> errors_;
 };
 
 template <class Pose>
@@ -210,8 +242,17 @@ Verb add_follow(CLI::App& root) {
       ->type_name("FILE");
   verb->add_option("--map", follow->map, "g2o file to write the present map to, time and again")
       ->type_name("FILE");
-  verb->add_option("--every", follow->every, "edges after which it is written again")
+  verb->add_option("--every", follow->every,
+                   "edges after which it is written again, and held against the truth")
       ->type_name("N");
+  outputs.add(*verb, "--times", follow->times, "how long each call took, as CSV", {".csv"});
+  verb->add_option("--ground-truth", follow->truth.path,
+                   "pose graph or trajectory taken as true: the error of the map is an event, too")
+      ->type_name("FILE");
+  verb->add_option("--timestamps", follow->truth.timestamps,
+                   "seconds of every vertex, one a line; the truth is interpolated at them")
+      ->type_name("FILE");
+  add_truth_flags(*verb, follow->truth);
   verb->add_flag("--keep-ambiguous", follow->keep_ambiguous,
                  "leave loops that are not proven either way in the graph");
   follow->add_flags(*verb);

@@ -13,6 +13,7 @@
 #pragma once
 
 #include "isotherm/slam/evaluate/evaluate_loops.hpp"
+#include "isotherm/slam/evaluate/evaluate_online.hpp"
 #include "isotherm/slam/evaluate/ground_truth.hpp"
 #include "isotherm/slam/evaluate/labels.hpp"
 #include "isotherm/slam/evaluate/trajectory_metrics.hpp"

@@ -13,7 +13,7 @@ constexpr VertexId kNumber = (VertexId{1} << 56) - 1;  // below the robot's lett
 }  // namespace
 
 template <class Pose>
-PoseGraph<Pose> in_replay_order(PoseGraph<Pose> graph) {
+std::vector<Index> replay_order(const PoseGraph<Pose>& graph) {
   std::vector<bool> step(graph.constraints.size(), false);
   for (const Index k : edge_roles(graph).odometry) step[k] = true;
   const auto time = [&](Index k) {
@@ -24,13 +24,20 @@ PoseGraph<Pose> in_replay_order(PoseGraph<Pose> graph) {
   std::vector<Index> order(graph.constraints.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, {}, time);
+  return order;
+}
+
+template <class Pose>
+PoseGraph<Pose> in_replay_order(PoseGraph<Pose> graph) {
   std::vector<Constraint<Pose>> sorted;
-  sorted.reserve(order.size());
-  for (const Index k : order) sorted.push_back(graph.constraints[k]);
+  sorted.reserve(graph.constraints.size());
+  for (const Index k : replay_order(graph)) sorted.push_back(graph.constraints[k]);
   graph.constraints = std::move(sorted);
   return graph;
 }
 
+template std::vector<Index> replay_order(const PoseGraph<Pose2>&);
+template std::vector<Index> replay_order(const PoseGraph<Pose3>&);
 template PoseGraph<Pose2> in_replay_order(PoseGraph<Pose2>);
 template PoseGraph<Pose3> in_replay_order(PoseGraph<Pose3>);
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/incremental/irl_reader.hpp"
+#include "io/incremental/jrl_reader.hpp"
 #include "isotherm/network/io/range_rows.hpp"
 
 namespace isotherm::slam {
@@ -107,6 +108,7 @@ FileContent content_of(FileFormat format) {
     case FileFormat::toro:
     case FileFormat::edge_rows:
     case FileFormat::irl:
+    case FileFormat::jrl:
     case FileFormat::places:
       return FileContent::pose_graph;
     case FileFormat::pyfg:
@@ -135,6 +137,7 @@ FileContent content_of(FileFormat format) {
 FileFormat detect_format(TextReader& reader) {
   std::string_view rest = reader.peek();
   if (rest.starts_with("ISOGRAPH")) return FileFormat::binary_graph;
+  if (detail::is_jrl(rest)) return FileFormat::jrl;
   if (detail::irl_header(rest)) return FileFormat::irl;
   const auto rows = format_of_rows(rest);
   if (rows != FileFormat::unknown) return rows;

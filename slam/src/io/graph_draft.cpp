@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
+#include "io/incremental/place_vertices.hpp"
 #include "io/information_check.hpp"
 #include "io/robot_files.hpp"
 #include "isotherm/slam/graph/repeats.hpp"
-#include "isotherm/spectral/graph/weighted_graph.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -155,55 +155,23 @@ class Finisher {
     draft_.end_ids = {};
   }
 
-  // Gives poses to the vertices that have no line of their own: breadth first
-  // along the constraints, starting from all that have one.
+  // Gives poses to the vertices that have no line of their own.
   void place_vertices() {
     if (missing_.empty()) return;
     std::vector<bool> placed(graph_.ids.size(), true);
     for (const Index vertex : missing_) placed[vertex] = false;
-    const auto adjacency = unit_graph();
-
-    std::vector<Index> queue;
-    for (Index v = 0; v < graph_.vertex_count(); ++v) {
-      if (placed[v]) queue.push_back(v);
-    }
-    auto next_start = missing_.begin();
-    std::size_t head = 0;
-    while (true) {
-      for (; head < queue.size(); ++head) place_neighbours(adjacency, queue[head], placed, queue);
-      next_start = std::find_if(next_start, missing_.end(), [&](Index v) { return !placed[v]; });
-      if (next_start == missing_.end()) return;
-      place_at_origin(*next_start);
-      placed[*next_start] = true;
-      queue.push_back(*next_start);
-    }
+    detail::place_vertices(graph_, std::move(placed),
+                           [this](Index vertex, std::optional<Index> edge) {
+                             edge ? tell_placed(vertex, *edge) : tell_at_origin(vertex);
+                           });
   }
 
-  spectral::WeightedGraph unit_graph() const {
-    std::vector<spectral::WeightedEdge> edges;
-    edges.reserve(graph_.constraints.size());
-    for (const auto& constraint : graph_.constraints) {
-      edges.push_back({constraint.from, constraint.to, 1.0});
-    }
-    return {graph_.vertex_count(), std::move(edges)};
+  void tell_placed(Index vertex, Index edge) {
+    report_.add_repair(options_, {"vertex placed", at(edge), vertex_name(graph_.ids[vertex]),
+                                  "vertex has no line of its own; placed by this edge"});
   }
 
-  void place_neighbours(const spectral::WeightedGraph& adjacency, Index vertex,
-                        std::vector<bool>& placed, std::vector<Index>& queue) {
-    for (const auto& [neighbour, edge] : adjacency.neighbours(vertex)) {
-      if (placed[neighbour]) continue;
-      const auto& constraint = graph_.constraints[edge];
-      const Pose& known = graph_.poses[vertex];
-      graph_.poses[neighbour] = constraint.from == vertex ? known * constraint.T_from_to
-                                                          : known * constraint.T_from_to.inverse();
-      placed[neighbour] = true;
-      queue.push_back(neighbour);
-      report_.add_repair(options_, {"vertex placed", at(edge), vertex_name(graph_.ids[neighbour]),
-                                    "vertex has no line of its own; placed by this edge"});
-    }
-  }
-
-  void place_at_origin(Index vertex) {
+  void tell_at_origin(Index vertex) {
     report_.add_repair(options_,
                        {"vertex placed",
                         {report_.path, 0, 0},
@@ -309,6 +277,7 @@ void append(GraphDraft<Pose>& draft, GraphDraft<Pose>& next, std::uint32_t file)
   move_to(draft.constraints, next.constraints);
   move_to(draft.end_ids, next.end_ids);
   move_to(draft.indefinite, next.indefinite);
+  move_to(draft.truth, next.truth);
 }
 
 void append(ReadReport& report, ReadReport& next) {
@@ -323,6 +292,20 @@ void append(ReadReport& report, ReadReport& next) {
   add(report.repairs, next.repairs);
   add(report.notes, next.notes);
   move_to(report.diagnostics, next.diagnostics);
+}
+
+// The true poses in order of id; of one that is told several times the first.
+template <class Pose>
+std::optional<AnyPoseGraph> truth_of(std::vector<typename GraphDraft<Pose>::Vertex> vertices) {
+  if (vertices.empty()) return std::nullopt;
+  std::ranges::stable_sort(vertices, {}, [](const auto& vertex) { return vertex.id; });
+  PoseGraph<Pose> truth;
+  for (const auto& vertex : vertices) {
+    if (!truth.ids.empty() && truth.ids.back() == vertex.id) continue;
+    truth.ids.push_back(vertex.id);
+    truth.poses.push_back(vertex.pose);
+  }
+  return truth;
 }
 
 }  // namespace
@@ -346,6 +329,8 @@ PoseGraphFile finish(FileDraft draft, const ReadOptions& options) {
   PoseGraphFile file;
   file.report = std::move(draft.report);
   file.other_lines = std::move(draft.other_lines);
+  file.truth = draft.spatial.empty() ? truth_of<Pose2>(std::move(draft.planar.truth))
+                                     : truth_of<Pose3>(std::move(draft.spatial.truth));
   const auto finished = [&](auto& graph) {
     return Finisher(std::move(graph), draft.paths, options, file.report).run(draft.fixed);
   };

@@ -34,6 +34,7 @@ struct GraphDraft {
   std::vector<Suspect> indefinite;                     // not positive semi-definite
   std::vector<bool> correct = {};                      // one a constraint, where a file says so
   std::vector<std::size_t> ends_of_files = {};         // of all but the last: constraints so far
+  std::vector<Vertex> truth = {};                      // true poses, where a file has them
 
   bool empty() const noexcept { return vertices.empty() && constraints.empty(); }
 };

@@ -22,21 +22,49 @@ constexpr double kUnitSquaredNorm = 16 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
+double PoseRepairs::wrapped(double radians, const SourceLocation& where) {
+  constexpr double kPi = std::numbers::pi;
+  if (std::abs(radians) <= kPi) return radians;
+  if (std::abs(radians) <= kPi + kPrintedRounding) {
+    ++rounded_angles_;
+  } else {
+    report_.add_repair(options_, {"angle wrapped", where, format_number(radians),
+                                  "angle outside [-pi, pi]; wrapped"});
+  }
+  return wrap_angle(radians);
+}
+
+Eigen::Quaterniond PoseRepairs::normalised(const Eigen::Quaterniond& q, const SourceLocation& where,
+                                           std::string_view token) {
+  if (std::abs(q.squaredNorm() - 1.0) <= kUnitSquaredNorm) return q;
+  const double norm = q.norm();
+  const double error = std::abs(norm - 1.0);
+  if (!(error <= kLargestNormError)) {
+    throw ParseError(where, std::string(token),
+                     "expected a unit quaternion, its norm is " + format_number(norm));
+  }
+  if (error <= kPrintedRounding) {
+    ++rounded_quaternions_;
+  } else {
+    report_.add_repair(options_, {"quaternion normalised", where, std::string(token),
+                                  "quaternion of norm " + format_number(norm) + "; normalised"});
+  }
+  return q.normalized();
+}
+
+void PoseRepairs::finish() {
+  if (rounded_quaternions_ > 0) report_.notes["quaternion rounded"] += rounded_quaternions_;
+  if (rounded_angles_ > 0) report_.notes["angle rounded"] += rounded_angles_;
+}
+
 std::string PoseFields::text_from(const SourceLocation& where) const {
   return std::string(reader_.text_from(where.column));
 }
 
 double PoseFields::angle() {
   const double radians = reader_.number("an angle in radians");
-  constexpr double kPi = std::numbers::pi;
-  if (std::abs(radians) <= kPi) return radians;
-  if (std::abs(radians) <= kPi + kPrintedRounding) {
-    ++rounded_angles_;
-  } else {
-    report_.add_repair(options_, {"angle wrapped", reader_.location(), format_number(radians),
-                                  "angle outside [-pi, pi]; wrapped"});
-  }
-  return wrap_angle(radians);
+  if (std::abs(radians) <= std::numbers::pi) return radians;  // where it stands is not asked
+  return repairs_.wrapped(radians, reader_.location());
 }
 
 Pose2 PoseFields::planar_step() {
@@ -66,20 +94,7 @@ Eigen::Quaterniond PoseFields::quaternion(bool w_first) {
   q.y() = reader_.number("qy");
   q.z() = reader_.number("qz");
   if (!w_first) q.w() = reader_.number("qw");
-  if (std::abs(q.squaredNorm() - 1.0) <= kUnitSquaredNorm) return q;
-  const double norm = q.norm();
-  const double error = std::abs(norm - 1.0);
-  if (!(error <= kLargestNormError)) {
-    throw ParseError(where, text_from(where),
-                     "expected a unit quaternion, its norm is " + format_number(norm));
-  }
-  if (error <= kPrintedRounding) {
-    ++rounded_quaternions_;
-  } else {
-    report_.add_repair(options_, {"quaternion normalised", where, text_from(where),
-                                  "quaternion of norm " + format_number(norm) + "; normalised"});
-  }
-  return q.normalized();
+  return repairs_.normalised(q, where, reader_.text_from(where.column));
 }
 
 Pose3 PoseFields::spatial() {
@@ -140,9 +155,8 @@ Eigen::Quaterniond PoseFields::nearest_rotation(const Eigen::Matrix3d& matrix,
 }
 
 void PoseFields::finish() {
-  if (rounded_quaternions_ > 0) report_.notes["quaternion rounded"] += rounded_quaternions_;
+  repairs_.finish();
   if (rounded_matrices_ > 0) report_.notes["rotation matrix rounded"] += rounded_matrices_;
-  if (rounded_angles_ > 0) report_.notes["angle rounded"] += rounded_angles_;
 }
 
 }  // namespace isotherm::slam::detail

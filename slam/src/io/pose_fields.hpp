@@ -1,20 +1,46 @@
 #pragma once
 
+#include <string>
+#include <string_view>
+
 #include "isotherm/base/read_report.hpp"
 #include "isotherm/base/text_reader.hpp"
 #include "isotherm/slam/graph/pose.hpp"
 
 namespace isotherm::slam::detail {
 
-/// Reads poses from the fields of a line and repairs what rounding did to them.
+/// Repairs what rounding did to poses.
 ///
 /// A quaternion whose norm is off by what six printed digits explain, or an angle
 /// as little outside [-pi, pi], is corrected and only counted; a larger deviation
 /// is a located repair; a quaternion further than 1 % from unit norm is an error.
+class PoseRepairs {
+ public:
+  /// Both must outlive this object.
+  PoseRepairs(const ReadOptions& options, ReadReport& report)
+      : options_(options), report_(report) {}
+
+  double wrapped(double radians, const SourceLocation& where);
+
+  /// `token` is the text of all four numbers.
+  Eigen::Quaterniond normalised(const Eigen::Quaterniond& q, const SourceLocation& where,
+                                std::string_view token);
+
+  /// Adds what was only counted to the report.
+  void finish();
+
+ private:
+  const ReadOptions& options_;
+  ReadReport& report_;
+  std::uint64_t rounded_quaternions_ = 0;
+  std::uint64_t rounded_angles_ = 0;
+};
+
+/// Reads poses from the fields of a line and repairs them.
 class PoseFields {
  public:
   PoseFields(TextReader& reader, const ReadOptions& options, ReadReport& report)
-      : reader_(reader), options_(options), report_(report) {}
+      : reader_(reader), options_(options), report_(report), repairs_(options, report) {}
 
   /// x y theta
   Pose2 planar();
@@ -40,8 +66,7 @@ class PoseFields {
   TextReader& reader_;
   const ReadOptions& options_;
   ReadReport& report_;
-  std::uint64_t rounded_quaternions_ = 0;
-  std::uint64_t rounded_angles_ = 0;
+  PoseRepairs repairs_;
   std::uint64_t rounded_matrices_ = 0;
 };
 

@@ -10,6 +10,7 @@
 
 #include "io/graph_draft.hpp"
 #include "io/incremental/irl_reader.hpp"
+#include "io/incremental/jrl_reader.hpp"
 #include "io/information_check.hpp"
 #include "io/pose_fields.hpp"
 #include "io/unused_records.hpp"
@@ -375,6 +376,7 @@ std::function<FileDraft()> line_reader(TextReader& reader, FileFormat format,
 
 FileDraft read_draft(TextReader& reader, FileFormat format, const ReadOptions& options) {
   if (format == FileFormat::irl) return read_irl(reader, options);
+  if (format == FileFormat::jrl) return read_jrl(reader, options);
   return PoseGraphReader(reader, format, options).run();
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "io/incremental/place_vertices.hpp"
 #include "io/information_check.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/slam/graph/information.hpp"
@@ -109,10 +110,6 @@ template <class Pose>
 PoseGraph<Pose> EdgeLog<Pose>::graph() const {
   PoseGraph<Pose> graph;
   graph.ids.assign(ids_.begin(), ids_.end());
-  if (!poses_.empty()) {
-    graph.poses.resize(graph.ids.size());
-    for (const auto& [id, pose] : poses_) graph.poses[*graph.find(id)] = pose;
-  }
   graph.constraints.reserve(edges_.size());
   for (const auto& edge : edges_) {
     auto constraint = edge.measured;
@@ -120,9 +117,24 @@ PoseGraph<Pose> EdgeLog<Pose>::graph() const {
     constraint.to = *graph.find(edge.to);
     graph.constraints.push_back(constraint);
   }
+  if (!poses_.empty()) add_poses(graph);
   const std::set<VertexId> fixed(fixed_.begin(), fixed_.end());
   for (const VertexId id : fixed) graph.fixed.push_back(*graph.find(id));
   return graph;
+}
+
+// As files that tell some poses are read.
+template <class Pose>
+void EdgeLog<Pose>::add_poses(PoseGraph<Pose>& graph) const {
+  graph.poses.resize(graph.ids.size());
+  std::vector<bool> placed(graph.ids.size(), false);
+  for (const auto& [id, pose] : poses_) {
+    const Index vertex = *graph.find(id);
+    graph.poses[vertex] = pose;
+    placed[vertex] = true;
+  }
+  if (poses_.size() == graph.ids.size()) return;
+  place_vertices(graph, std::move(placed), [](Index, std::optional<Index>) {});
 }
 
 template class EdgeLog<Pose2>;

@@ -54,6 +54,7 @@ class EdgeLog {
 
  private:
   bool is_step(const Edge& edge);
+  void add_poses(PoseGraph<Pose>& graph) const;
 
   std::vector<Edge> edges_;
   std::map<VertexId, Pose> poses_;

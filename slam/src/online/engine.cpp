@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "isotherm/base/error.hpp"
+#include "online/present_map.hpp"
 #include "online/reason.hpp"
 #include "prune/consensus/climb/report.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
@@ -16,10 +18,11 @@ namespace {
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 // Searches from every start begin where one of the loops can be pruned, and then whenever there are
-// four times as many, so that all of them together take little longer than the last. That is done
-// by the time that there are a quarter more edges; of so few loops, as soon as it can be.
+// twice as many, and the next one may take as long as all before it: together they take about two
+// batches at most. Each is done by the time that there are a quarter more edges; of so few loops,
+// as soon as it can be.
 constexpr Index kFirst = kFewLoops;
-constexpr Index kGrowth = 4;
+constexpr Index kGrowth = 2;
 constexpr double kUntil = 0.25;
 constexpr Index kFew = 32;
 
@@ -78,7 +81,8 @@ void OnlineEngine<Pose>::go_on() {
 template <class Pose>
 void OnlineEngine<Pose>::search_everywhere(double budget) {
   if (!everywhere_) {
-    const bool due = loops_ >= kFirst && loops_ >= kGrowth * searched_;
+    const double next = most_search_work_ * static_cast<double>(rows_.size());
+    const bool due = loops_ >= kFirst && loops_ >= kGrowth * searched_ && searches_work_ <= next;
     if (!due && map_) return;
     if (due) searched_ = loops_;
     everywhere_ = begin(due);
@@ -87,12 +91,14 @@ void OnlineEngine<Pose>::search_everywhere(double budget) {
   const auto map = everywhere_->map;
   const double edges = static_cast<double>(map->graph().constraints.size());
   search_work_ = everywhere_->task->spent() / edges;
+  most_search_work_ = std::max(most_search_work_, search_work_);
+  searches_work_ += everywhere_->task->spent();
   everywhere_.reset();
   const bool latest = !map_ || map->graph().constraints.size() >= map_->graph().constraints.size();
   if (latest) {
     next_.reset();
     adopt(map);
-  } else if (map->explained() && map->surpassed()) {
+  } else if (map->surpassed()) {
     rival_ = map;
   }
 }
@@ -134,7 +140,7 @@ typename OnlineEngine<Pose>::Search OnlineEngine<Pose>::begin(bool everywhere) c
   return search;
 }
 
-// Where the equations break down nothing is explained, and what was stays.
+// Where the equations break down nothing is explained.
 template <class Pose>
 bool OnlineEngine<Pose>::run(Search& search, double budget) {
   try {
@@ -147,13 +153,73 @@ bool OnlineEngine<Pose>::run(Search& search, double budget) {
 
 template <class Pose>
 void OnlineEngine<Pose>::adopt(std::shared_ptr<Snapshot<Pose>> map) {
+  const bool broke_down = !map->explained() && map_ && map_->explained();
+  if (broke_down) return;
   const auto seen = static_cast<Index>(map->graph().constraints.size());
   take_over(map->verdicts());
   outlook_.reset();
   map_ = std::move(map);
   if (map_->explained()) outlook_.emplace(log_, *map_, options_.consensus);
-  for (Index k = seen; k < static_cast<Index>(rows_.size()); ++k) {
-    if (!log_.edges()[k].step) judge(k);
+  runs_ = OpenRuns(outlook_ ? outlook_->prior() : 0.0);
+  standings_.clear();
+  judge_since(seen);
+}
+
+// Each run once, with all its loops.
+template <class Pose>
+void OnlineEngine<Pose>::judge_since(Index first) {
+  std::vector<Index> loops;
+  std::vector<Index> others;
+  for (Index k = first; k < static_cast<Index>(rows_.size()); ++k) {
+    const auto& edge = log_.edges()[k];
+    if (edge.step) continue;
+    const bool in_run = outlook_ && edge.from != edge.to && !log_.repeated_by(edge);
+    if (in_run) consider(k);
+    (in_run ? loops : others).push_back(k);
+  }
+  std::set<Index> judged;
+  for (const Index k : loops) {
+    if (judged.contains(k)) continue;
+    judge_run(k);
+    for (const auto& [edge, log_odds] : runs_.log_odds(k)) judged.insert(edge);
+  }
+  for (const Index k : others) judge(k);
+}
+
+// Adds a loop to those that are not accepted, behind those before it in its run.
+template <class Pose>
+void OnlineEngine<Pose>::consider(Index edge) {
+  std::vector<OpenRuns::Member> ahead;
+  for (Index k = edge; k != OpenRuns::kNone && !runs_.contains(k);) {
+    const auto lead = outlook_->lead(k);
+    standings_[k] = outlook_->standing(k);
+    ahead.push_back({.edge = k, .own = standings_[k].evidence});
+    if (lead) ahead.back().before = lead->edge;
+    if (lead) ahead.back().with_before = lead->evidence;
+    k = ahead.back().before;
+  }
+  for (; !ahead.empty(); ahead.pop_back()) runs_.add(ahead.back());
+}
+
+// All loops of its run.
+template <class Pose>
+void OnlineEngine<Pose>::judge_run(Index edge) {
+  const auto run = runs_.log_odds(edge);
+  const bool many = static_cast<std::size_t>(loops_) >= kFewLoops;
+  for (const auto& [k, log_odds] : run) {
+    const auto& told = log_.edges()[k];
+    const auto& standing = standings_.at(k);
+    const bool together = run.size() > 1 && standing.log_odds <= 0.0;
+    const bool accepted = log_odds > 0.0 && (standing.connected() || run.size() > 1);
+    spectral::EdgeVerdict row{.edge = k, .from = told.from, .to = told.to};
+    row.score = -log_odds;
+    row.threshold = log_odds_of(1.0 - options_.consensus.significance);
+    row.verdict = verdict_of(accepted, log_odds, row.threshold, many && standing.connected());
+    row.probability = 1.0 / (1.0 + std::exp(-log_odds));
+    row.stage = stage_of(accepted, standing.connected());
+    auto reason =
+        accepted && together ? reason_together(standing.chi2) : reason_of(row, standing.chi2);
+    set(std::move(row), std::move(reason));
   }
 }
 
@@ -166,14 +232,13 @@ void OnlineEngine<Pose>::take_over(const PruneResult& result) {
   }
 }
 
-// A loop that came after the snapshot, by that.
+// A loop that came after the snapshot, by that and the others that came.
 template <class Pose>
 void OnlineEngine<Pose>::judge(Index number) {
   const auto& edge = log_.edges()[number];
   spectral::EdgeVerdict row{.edge = number, .from = edge.from, .to = edge.to};
   row.verdict = spectral::Verdict::ambiguous;
   row.stage = "waiting";
-  double chi2 = 0.0;
   const auto repeated = log_.repeated_by(edge);
   if (edge.from == edge.to) {
     row.stage = "self-edge";
@@ -184,18 +249,10 @@ void OnlineEngine<Pose>::judge(Index number) {
     if (!original) row.verdict = spectral::Verdict::keep;
     row.stage = "repeat";
   } else if (outlook_) {
-    const auto standing = outlook_->standing(number);
-    const bool accepted = standing.connected() && standing.log_odds > 0.0;
-    const bool many = static_cast<std::size_t>(loops_) >= kFewLoops;
-    chi2 = standing.chi2;
-    row.score = -standing.log_odds;
-    row.threshold = log_odds_of(1.0 - options_.consensus.significance);
-    row.verdict =
-        verdict_of(accepted, standing.log_odds, row.threshold, many && standing.connected());
-    row.probability = 1.0 / (1.0 + std::exp(-standing.log_odds));
-    row.stage = stage_of(accepted, standing.connected());
+    consider(number);
+    return judge_run(number);
   }
-  auto reason = reason_of(row, chi2);
+  auto reason = reason_of(row, 0.0);
   set(std::move(row), std::move(reason));
 }
 
@@ -260,6 +317,35 @@ spectral::EdgeVerdicts OnlineEngine<Pose>::verdicts() const {
   return all;
 }
 
+// Whether loops are thought true that the snapshot has not accepted.
+template <class Pose>
+bool OnlineEngine<Pose>::has_news() const {
+  return outlook_ && std::ranges::any_of(standings_, [this](const auto& known) {
+           return is_accepted(known.first);
+         });
+}
+
+template <class Pose>
+bool OnlineEngine<Pose>::is_accepted(Index edge) const {
+  const auto& now = rows_[edge].now;
+  return now && now->verdict.stage == stage_of(true, true);
+}
+
+// With the loops that are thought true now, as accurate as was learnt.
+template <class Pose>
+void OnlineEngine<Pose>::bring_up_to_date(PoseGraph<Pose>& graph) const {
+  std::vector<bool> steps;
+  std::vector<bool> used;
+  for (Index k = 0; k < static_cast<Index>(rows_.size()); ++k) {
+    steps.push_back(log_.edges()[k].step);
+    used.push_back(is_accepted(k));
+  }
+  const auto& best = map_->best();
+  const Accuracy<Pose> accuracy{best.scale.odometry * best.shapes.odometry,
+                                best.scale.loops * best.shapes.loops};
+  settle_poses(graph, steps, used, accuracy);
+}
+
 // Vertices that the map has not follow odometry.
 template <class Pose>
 PoseGraph<Pose> OnlineEngine<Pose>::graph() const {
@@ -280,6 +366,7 @@ PoseGraph<Pose> OnlineEngine<Pose>::graph() const {
       graph.poses[v] = given[v];
     }
   }
+  if (has_news()) bring_up_to_date(graph);
   return graph;
 }
 

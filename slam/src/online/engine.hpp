@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "isotherm/slam/online/online_consensus.hpp"
 #include "online/edge_log.hpp"
+#include "online/open_runs.hpp"
 #include "online/outlook.hpp"
 #include "online/paced_task.hpp"
 #include "online/saved_edges.hpp"
@@ -65,6 +67,12 @@ class OnlineEngine {
   void adopt(std::shared_ptr<Snapshot<Pose>> map);
   void take_over(const PruneResult& result);
   void judge(Index edge);
+  void judge_run(Index edge);
+  void consider(Index edge);
+  void judge_since(Index first);
+  bool has_news() const;
+  bool is_accepted(Index edge) const;
+  void bring_up_to_date(PoseGraph<Pose>& graph) const;
   void set(spectral::EdgeVerdict verdict, std::string reason);
   std::vector<LoopChange> changes();
 
@@ -78,11 +86,15 @@ class OnlineEngine {
   std::shared_ptr<const Snapshot<Pose>> map_;
   std::shared_ptr<const Snapshot<Pose>> rival_;  // of a search that led higher
   std::optional<detail::Outlook<Pose>> outlook_;
+  detail::OpenRuns runs_;                // that the snapshot has not accepted
+  std::map<Index, Standing> standings_;  // of these
   std::optional<Search> everywhere_;
   std::optional<Search> next_;
-  Index searched_ = 0;        // loops at the last search from every start
-  double search_work_ = 0.0;  // of that, an edge
-  double credit_ = 0.0;       // work that following up may do
+  Index searched_ = 0;             // loops at the last search from every start
+  double search_work_ = 0.0;       // of that, an edge
+  double most_search_work_ = 0.0;  // of any so far
+  double searches_work_ = 0.0;     // of all of them
+  double credit_ = 0.0;            // work that following up may do
 };
 
 extern template class OnlineEngine<Pose2>;

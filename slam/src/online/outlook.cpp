@@ -39,49 +39,61 @@ Outlook<Pose>::Outlook(const EdgeLog<Pose>& log, const Snapshot<Pose>& map,
   if (!standings.empty()) prior_ = standings.front().log_odds - standings.front().evidence;
 }
 
-// Back along the steps that came since, to a vertex of the map.
+// Back along the steps that came since, to a vertex of the map or one that is known from there.
 template <class Pose>
 std::optional<typename Outlook<Pose>::Place> Outlook<Pose>::place(VertexId id) const {
-  Place found;
-  UncertainPose<Pose> since;
-  const typename Pose::Tangent variances = map_.best().scale.odometry * map_.best().shapes.odometry;
-  std::optional<typename Snapshot<Pose>::Anchor> anchor;
-  while (true) {
-    const auto vertex = map_.graph().find(id);
-    if (vertex) anchor = map_.anchor(*vertex);
-    if (anchor) {
-      found.position = *vertex;
-      break;
-    }
+  std::vector<VertexId> behind;
+  auto found = known_place(id);
+  while (!found) {
     const auto* step = log_.step_to(id);
     if (step == nullptr) return std::nullopt;
-    since = compose(step->path(variances), since);
+    behind.push_back(id);
     id = step->before;
-    ++found.steps;
+    found = known_place(id);
   }
-  found.node = anchor->node;
-  found.part = map_.best().layout.component[found.node];
-  found.chain = map_.assessment().graph().chain[found.node];
-  found.at = compose(anchor->path, since);
+  const typename Pose::Tangent variances = map_.best().scale.odometry * map_.best().shapes.odometry;
+  while (!behind.empty()) {
+    found->at = compose(found->at, log_.step_to(behind.back())->path(variances));
+    ++found->steps;
+    places_.emplace(behind.back(), *found);
+    behind.pop_back();
+  }
   return found;
 }
 
-// Along the steps that came since alone, where one vertex comes before the other there.
 template <class Pose>
-std::optional<UncertainPose<Pose>> Outlook<Pose>::tail(VertexId from, VertexId to) const {
+std::optional<typename Outlook<Pose>::Place> Outlook<Pose>::known_place(VertexId id) const {
+  const auto known = places_.find(id);
+  if (known != places_.end()) return known->second;
+  const auto vertex = map_.graph().find(id);
+  const auto anchor = vertex ? map_.anchor(*vertex) : std::nullopt;
+  if (!anchor) return std::nullopt;
+  return Place{.node = anchor->node,
+               .part = map_.best().layout.component[anchor->node],
+               .chain = map_.assessment().graph().chain[anchor->node],
+               .position = *vertex,
+               .at = anchor->path};
+}
+
+// Along steps alone, where one vertex comes before the other there, and where none between them
+// need be on the map.
+template <class Pose>
+std::optional<UncertainPose<Pose>> Outlook<Pose>::steps(VertexId from, VertexId to,
+                                                        bool on_map) const {
   if (from > to) {
-    auto back = tail(to, from);
+    auto back = steps(to, from, on_map);
     if (back) back = inverse(*back);
     return back;
   }
   const typename Pose::Tangent variances = map_.best().scale.odometry * map_.best().shapes.odometry;
   UncertainPose<Pose> path;
-  while (to != from) {
+  while (to > from) {
     const auto* step = log_.step_to(to);
-    if (map_.graph().find(to) || step == nullptr) return std::nullopt;
+    if (step == nullptr || (!on_map && map_.graph().find(to))) return std::nullopt;
     path = compose(step->path(variances), path);
     to = step->before;
   }
+  if (to != from) return std::nullopt;
   return path;
 }
 
@@ -106,6 +118,7 @@ UncertainPose<Pose> Outlook<Pose>::between(const Place& a, const Place& b) const
 
 template <class Pose>
 Standing Outlook<Pose>::standing(Index edge) const {
+  if (const auto loop = loop_of(edge)) return map_.best().standings[*loop];
   const auto& told = log_.edges()[edge];
   auto measured = told.measured;
   measured.from = 0;
@@ -115,11 +128,10 @@ Standing Outlook<Pose>::standing(Index edge) const {
   const VertexId to = measured.from == 0 ? told.to : told.from;
   const auto a = place(from);
   const auto b = place(to);
-  auto path = tail(from, to);
+  auto path = steps(from, to, false);
   const auto& best = map_.best();
   const auto& assessment = map_.assessment();
-  const Matrix Sigma = scaled<Pose>(covariance_from_information<Pose::kDof>(measured.information),
-                                    best.shapes.loops);
+  const Matrix Sigma = covariance_of(measured);
   Standing standing{.parts = {0, 0}};
   double density = -map_.objective().log_volume();
   if (!path && a && b && a->part == b->part) path = between(*a, *b);
@@ -133,23 +145,34 @@ Standing Outlook<Pose>::standing(Index edge) const {
   } else {
     standing.parts.second = 1;
   }
-  const Place nowhere{.chain = -1};
-  standing.evidence = density - log_alternative(edge, a ? *a : nowhere, b ? *b : nowhere, Sigma);
+  standing.evidence = density - log_alternative(edge);
   standing.log_odds = standing.evidence + prior_;
   return standing;
 }
 
 template <class Pose>
-double Outlook<Pose>::log_alternative(Index edge, const Place& a, const Place& b,
-                                      const Matrix& Sigma) const {
+typename Pose::Matrix Outlook<Pose>::covariance_of(const Constraint<Pose>& measured) const {
+  return scaled<Pose>(covariance_from_information<Pose::kDof>(measured.information),
+                      map_.best().shapes.loops);
+}
+
+// The density that the loop's is held against.
+template <class Pose>
+double Outlook<Pose>::log_alternative(Index edge) const {
+  if (const auto loop = loop_of(edge)) {
+    return map_.assessment().log_alternative(static_cast<Index>(*loop));
+  }
   const auto& [from, to, measured, step] = log_.edges()[edge];
   const auto& found = map_.assessment().findings();
   const double scale = map_.best().scale.loops;
   if (is_copied(edge)) {
     const double log_sigma =
-        log_determinant(Eigen::LLT<Matrix>(Sigma)) + Pose::kDof * std::log(scale);
+        log_determinant(Eigen::LLT<Matrix>(covariance_of(measured))) + Pose::kDof * std::log(scale);
     return log_copy_density<Pose>(log_sigma);
   }
+  const Place nowhere{.chain = -1};
+  const Place a = place(from).value_or(nowhere);
+  const Place b = place(to).value_or(nowhere);
   const Index apart = std::abs((a.position + a.steps) - (b.position + b.steps));
   const std::size_t group = a.chain == b.chain ? span_class(apart) : kSpanClasses;
   const Pose forward = from <= to ? measured.T_from_to : measured.T_from_to.inverse();
@@ -157,21 +180,104 @@ double Outlook<Pose>::log_alternative(Index edge, const Place& a, const Place& b
          map_.objective().nearness().log_false_density(forward, scale * map_.best().shapes.loops);
 }
 
-// Whether one of the loops just before it, with ends near its own, states the same.
+// Its place among the loops of the snapshot, if that judged it.
 template <class Pose>
-bool Outlook<Pose>::is_copied(Index edge) const {
-  const auto apart = [](VertexId a, VertexId b) { return a > b ? a - b : b - a; };
+std::optional<std::size_t> Outlook<Pose>::loop_of(Index edge) const {
+  const auto& loops = map_.loops();
+  const auto found = std::ranges::lower_bound(loops, edge);
+  if (found == loops.end() || *found != edge) return std::nullopt;
+  return static_cast<std::size_t>(found - loops.begin());
+}
+
+// Not a repeat, and not accepted.
+template <class Pose>
+bool Outlook<Pose>::is_open(Index edge) const {
+  if (edge < map_.graph().constraint_count()) {
+    const auto loop = loop_of(edge);
+    return loop && !map_.best().accepted[*loop];
+  }
+  const auto& told = log_.edges()[edge];
+  return told.from != told.to && !log_.repeated_by(told);
+}
+
+// The loops just before it whose ends are near its own.
+template <class Pose>
+template <class Visit>
+void Outlook<Pose>::for_each_near(Index edge, const Visit& visit) const {
+  const auto near = [this](VertexId a, VertexId b) {
+    return (a > b ? a - b : b - a) <= static_cast<VertexId>(window_);
+  };
   const auto& own = log_.edges()[edge];
+  const auto [first, last] = std::minmax(own.from, own.to);
   Index seen = 0;
   for (Index k = edge - 1; k >= 0 && seen < kRecent; --k) {
     const auto& other = log_.edges()[k];
     if (other.step) continue;
     ++seen;
-    const auto window = static_cast<VertexId>(window_);
-    if (apart(other.from, own.from) > window || apart(other.to, own.to) > window) continue;
-    if (measure_the_same(own.measured.T_from_to, other.measured.T_from_to)) return true;
+    const auto [other_first, other_last] = std::minmax(other.from, other.to);
+    if (near(first, other_first) && near(last, other_last)) visit(k);
   }
-  return false;
+}
+
+template <class Pose>
+bool Outlook<Pose>::is_copied(Index edge) const {
+  const auto& own = log_.edges()[edge];
+  bool copied = false;
+  for_each_near(edge, [&](Index k) {
+    const auto& other = log_.edges()[k];
+    const bool turned = (own.from < own.to) != (other.from < other.to);
+    const Pose T = turned ? other.measured.T_from_to.inverse() : other.measured.T_from_to;
+    copied = copied || measure_the_same(own.measured.T_from_to, T);
+  });
+  return copied;
+}
+
+template <class Pose>
+typename Outlook<Pose>::Forward Outlook<Pose>::forward(Index edge) const {
+  const auto& told = log_.edges()[edge];
+  auto measured = told.measured;
+  measured.from = 0;
+  measured.to = 1;
+  measured = in_own_frame(measured);
+  const UncertainPose<Pose> pose{measured.T_from_to,
+                                 map_.best().scale.loops * covariance_of(measured)};
+  const VertexId from = measured.from == 0 ? told.from : told.to;
+  const VertexId to = measured.from == 0 ? told.to : told.from;
+  if (from <= to) return {from, to, pose};
+  return {to, from, inverse(pose)};
+}
+
+// Of the other's measurement, as the known one and the odometry between their ends predict it.
+template <class Pose>
+std::optional<double> Outlook<Pose>::log_density(const Forward& known, const Forward& other) const {
+  const auto before = steps(other.from, known.from, true);
+  const auto after = steps(known.to, other.to, true);
+  if (!before || !after) return std::nullopt;
+  const auto predicted = compose(compose(*before, known.measured), *after);
+  const typename Pose::Tangent r = (other.measured.T.inverse() * predicted.T).log();
+  const Matrix J = residual_jacobian<Pose>(r);
+  return log_normal<Pose>(r, other.measured.covariance + J * predicted.covariance * J.transpose());
+}
+
+template <class Pose>
+std::optional<typename Outlook<Pose>::Lead> Outlook<Pose>::lead(Index edge) const {
+  const Forward own = forward(edge);
+  std::optional<Index> nearest;
+  VertexId least = 0;
+  for_each_near(edge, [&](Index k) {
+    if (!is_open(k)) return;
+    const auto& other = log_.edges()[k];
+    const auto [first, last] = std::minmax(other.from, other.to);
+    const auto apart = [](VertexId a, VertexId b) { return a > b ? a - b : b - a; };
+    const VertexId distance = apart(first, own.from) + apart(last, own.to);
+    if (nearest && distance >= least) return;
+    nearest = k;
+    least = distance;
+  });
+  if (!nearest) return std::nullopt;
+  const auto density = log_density(forward(*nearest), own);
+  if (!density) return std::nullopt;
+  return Lead{*nearest, *density - log_alternative(edge)};
 }
 
 template class Outlook<Pose2>;

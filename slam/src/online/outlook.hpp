@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <unordered_map>
 #include <vector>
 
 #include "isotherm/spectral/sparse/branch_covariance.hpp"
@@ -17,8 +18,21 @@ class Outlook {
   /// All must outlive this object. The snapshot must be explained.
   Outlook(const EdgeLog<Pose>& log, const Snapshot<Pose>& map, const ConsensusOptions& options);
 
-  /// Of an edge of the log, by its number.
+  /// Of an edge of the log, by its number: how it stands on the map.
   Standing standing(Index edge) const;
+
+  /// The log odds of any loop being true.
+  double prior() const noexcept { return prior_; }
+
+  /// The loop before another in its run, and log of how much likelier true than false the other is
+  /// where that is true.
+  struct Lead {
+    Index edge = 0;
+    double evidence = 0.0;
+  };
+
+  /// The nearest of the loops just before an edge, among those that the snapshot has not accepted.
+  std::optional<Lead> lead(Index edge) const;
 
  private:
   using Matrix = typename Pose::Matrix;
@@ -34,16 +48,32 @@ class Outlook {
   };
 
   std::optional<Place> place(VertexId id) const;
-  std::optional<UncertainPose<Pose>> tail(VertexId from, VertexId to) const;
+  std::optional<Place> known_place(VertexId id) const;
+  std::optional<UncertainPose<Pose>> steps(VertexId from, VertexId to, bool on_map) const;
+  Matrix covariance_of(const Constraint<Pose>& measured) const;
+
+  // From the vertex of the lower id to the other, at the scales of the snapshot.
+  struct Forward {
+    VertexId from = 0;
+    VertexId to = 0;
+    UncertainPose<Pose> measured;
+  };
+  Forward forward(Index edge) const;
+  std::optional<double> log_density(const Forward& known, const Forward& other) const;
   UncertainPose<Pose> between(const Place& a, const Place& b) const;
-  double log_alternative(Index edge, const Place& a, const Place& b, const Matrix& Sigma) const;
+  double log_alternative(Index edge) const;
+  std::optional<std::size_t> loop_of(Index edge) const;
+  bool is_open(Index edge) const;
   bool is_copied(Index edge) const;
+  template <class Visit>
+  void for_each_near(Index edge, const Visit& visit) const;
 
   const EdgeLog<Pose>& log_;
   const Snapshot<Pose>& map_;
   Index window_;
   spectral::BranchCovariance<Pose::kDof> covariance_;
-  double prior_ = 0.0;  // log odds of any loop being true
+  double prior_ = 0.0;                                  // log odds of any loop being true
+  mutable std::unordered_map<VertexId, Place> places_;  // that were asked for
 };
 
 extern template class Outlook<Pose2>;

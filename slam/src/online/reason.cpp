@@ -26,4 +26,11 @@ std::string reason_of(const spectral::EdgeVerdict& verdict, double chi2) {
   return text.str();
 }
 
+std::string reason_together(double chi2) {
+  std::ostringstream text;
+  text << "agrees with the loops next to it, which say together how odometry has drifted (chi2 "
+       << std::setprecision(3) << chi2 << " against the map so far)";
+  return text.str();
+}
+
 }  // namespace isotherm::slam::detail

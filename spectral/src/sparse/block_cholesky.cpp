@@ -153,6 +153,8 @@ double BlockCholesky::log_determinant() const {
   return block_count() == 0 ? 0.0 : factor_->log_determinant();
 }
 
+double BlockCholesky::flops() const { return block_count() == 0 ? 0.0 : factor_->flops(); }
+
 detail::Supernodes BlockCholesky::supernodes() const {
   if (form_ != FactorForm::supernodal) {
     throw InvalidArgument("form", "the factor was not asked to be supernodal");

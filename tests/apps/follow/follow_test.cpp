@@ -76,6 +76,67 @@ TEST_F(Follow, WritesThePresentMap) {
   EXPECT_EQ(run("follow in.g2o --every 3").code, 2);
 }
 
+TEST_F(Follow, IsJudgedThroughTime) {
+  run_ok("simulate city --poses 80 --loops 30 -o clean.g2o --ground-truth truth.g2o -q");
+  run_ok("convert bad.g2o --in-time-order -o in.g2o --known-labels l.csv --labels in.csv -q");
+  run_ok(
+      "follow in.g2o --every 10 --ground-truth truth.g2o --events e.jsonl --times t.csv "
+      "--verdicts v.csv --json s.json -q");
+  const std::string text = run_ok("eval online e.jsonl in.csv --json o.json --steps steps.csv");
+  EXPECT_THAT(text, HasSubstr("iATE"));
+  const auto result = Json::parse(read_text(folder / "o.json"));
+  EXPECT_EQ(result["schema"], "isotherm.eval.online/1");
+  EXPECT_EQ(
+      result["right"].get<int>() + result["wrong"].get<int>() + result["ambiguous"].get<int>(), 45);
+  EXPECT_GE(result["mean_precision"], 0.5);
+  const auto whole = Json::parse(run_ok("eval loops v.csv in.csv --json - -q"));
+  EXPECT_EQ(result["ambiguous"], whole["ambiguous"]);
+  EXPECT_GE(result["right"].get<int>(), whole["tp"].get<int>());
+  const auto summary = Json::parse(read_text(folder / "s.json"));
+  EXPECT_NEAR(summary["iate_m"].get<double>(), result["iate_m"].get<double>(), 1e-12);
+  EXPECT_THAT(read_text(folder / "steps.csv"),
+              testing::StartsWith("at,poses,kept_true,kept_false,missed,precision,recall,ate\n"));
+  EXPECT_THAT(read_text(folder / "t.csv"), testing::StartsWith("edge,poses,ms,cpu_ms\n0,0,"));
+}
+
+TEST_F(Follow, SaysWhatAnEventLogLacks) {
+  write_text(folder / "e.jsonl", "{\"event\": \"end\", \"edges\": 3}\n{\"event\": \"verdict\"}\n");
+  auto result = run("eval online e.jsonl l.csv");
+  EXPECT_EQ(result.code, 3);
+  EXPECT_THAT(result.err, HasSubstr("e.jsonl:2:"));
+  EXPECT_THAT(result.err, HasSubstr("without 'edge'"));
+  EXPECT_EQ(run("follow in.g2o --ground-truth clean.g2o").code, 2);
+  EXPECT_EQ(run("follow - --every 5 --ground-truth clean.g2o < in.g2o").code, 2);
+  EXPECT_EQ(run("convert bad.g2o -o c.g2o --known-labels l.csv").code, 2);
+}
+
+TEST_F(Follow, ReplaysJrl) {
+  const auto between = [](int from, int to, double x) {
+    return R"({"type": "BetweenFactorPose2", "key1": )" + std::to_string(from) + R"(, "key2": )" +
+           std::to_string(to) + R"(, "measurement": {"x": )" + std::to_string(x) +
+           R"(, "y": 0, "theta": 0}, "covariance": [0.01, 0, 0, 0, 0.01, 0, 0, 0, 0.01]})";
+  };
+  // There and back on a line, with six loops between the ways and one that is false.
+  std::string entries;
+  for (int k = 0; k < 20; ++k) {
+    entries += k > 0 ? ",\n" : "";
+    entries += "{\"stamp\": " + std::to_string(k) + ", \"measurements\": [" +
+               between(k, k + 1, k < 10 ? 1.0 : -1.0);
+    if (k >= 13) entries += ", " + between(k + 1, 20 - k - 1, k == 19 ? 30.0 : 0.0);
+    entries += "]}";
+  }
+  write_text(folder / "a.jrl", "{\"measurements\": {\"a\": [" + entries +
+                                   "]}, \"outlier_factors\": {\"a\": [[19, 1]]}}");
+  run_ok("prune a.jrl --verdicts b.csv -q");
+  run_ok("follow a.jrl --verdicts v.csv --events e.jsonl -q");
+  EXPECT_EQ(read_text(folder / "v.csv"), read_text(folder / "b.csv"));
+  run_ok("convert a.jrl -o a.g2o --labels l.csv -q");
+  const auto result = Json::parse(run_ok("eval online e.jsonl l.csv --json - -q"));
+  EXPECT_EQ(result["right"], 7);
+  EXPECT_EQ(Json::parse(run_ok("info a.jrl --json - -q"))["format"], "jrl");
+  EXPECT_EQ(run("convert a.jrl -o a.g2o --truth t.g2o").code, 2);
+}
+
 TEST_F(Follow, SaysWhereTheInputIsWrong) {
   write_text(folder / "a.g2o",
              "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n\n# note\nEDGE_SE2 1 2 1 0 x 1 0 0 1 0 1\n");

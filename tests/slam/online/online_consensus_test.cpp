@@ -14,13 +14,17 @@
 
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/random.hpp"
+#include "isotherm/slam/graph/odometry.hpp"
+#include "isotherm/slam/optimize/optimize.hpp"
 #include "isotherm/slam/prune/prune.hpp"
-#include "isotherm/slam/simulate/corrupt.hpp"
-#include "slam/loop_graph.hpp"
+#include "slam/online/online_graphs.hpp"
 
 namespace isotherm::slam {
 namespace {
 
+using isotherm_test::add;
+using isotherm_test::add_all;
+using isotherm_test::corrupted_graph;
 using isotherm_test::random_loop_graph;
 using spectral::Verdict;
 
@@ -28,47 +32,6 @@ template <class Pose>
 class OnlineConsensusOf : public testing::Test {};
 using Poses = testing::Types<Pose2, Pose3>;
 TYPED_TEST_SUITE(OnlineConsensusOf, Poses);
-
-/// Half as many false loops as true ones, each behind the odometry that it needs.
-template <class Pose>
-PoseGraph<Pose> corrupted_graph(std::uint64_t seed, int poses = 60, int loops = 24) {
-  Random random(seed);
-  const auto made = random_loop_graph<Pose>(random, poses, loops, 1.0);
-  CorruptOptions options;
-  options.ratio = 0.5;
-  options.seed = seed;
-  auto graph = corrupt(made.graph, made.truth, options).graph;
-  graph.poses.clear();
-  // Which of two edges between neighbours is the step must not depend on their order.
-  for (auto& edge : graph.constraints) edge.link = LinkKind::loop;
-  for (const Index k : edge_roles(made.graph).odometry) {
-    const auto& step = made.graph.constraints[k];
-    for (auto& edge : graph.constraints) {
-      const bool same = edge.from == step.from && edge.to == step.to &&
-                        edge.T_from_to.log() == step.T_from_to.log();
-      if (same) edge.link = LinkKind::odometry;
-    }
-  }
-  std::ranges::stable_sort(graph.constraints, {},
-                           [](const auto& edge) { return std::max(edge.from, edge.to); });
-  return graph;
-}
-
-template <class Pose>
-std::vector<LoopChange> add(OnlineConsensus<Pose>& online, const PoseGraph<Pose>& graph,
-                            const Constraint<Pose>& edge) {
-  return online.add_edge(graph.ids[edge.from], graph.ids[edge.to], edge.T_from_to, edge.information,
-                         edge.link);
-}
-
-template <class Pose>
-std::vector<LoopChange> add_all(OnlineConsensus<Pose>& online, const PoseGraph<Pose>& graph) {
-  std::vector<LoopChange> all;
-  for (const auto& edge : graph.constraints) {
-    for (auto& change : add(online, graph, edge)) all.push_back(std::move(change));
-  }
-  return all;
-}
 
 void expect_same(const spectral::EdgeVerdicts& a, const spectral::EdgeVerdicts& b) {
   ASSERT_EQ(a.size(), b.size());
@@ -230,6 +193,31 @@ TYPED_TEST(OnlineConsensusOf, PlacesAllPoses) {
   const auto made = random_loop_graph<Pose>(random, 60, 30, 0.0);
   OnlineConsensus<Pose> online;
   add_all(online, made.graph);
+  EXPECT_LT(isotherm_test::worst_difference(online.graph().poses, made.truth), 1e-6);
+}
+
+// Loops that come after the last search that has ended move the map as well.
+TYPED_TEST(OnlineConsensusOf, PlacesPosesByLoopsThatAreNew) {
+  using Pose = TypeParam;
+  Random random(18);
+  const auto made = random_loop_graph<Pose>(random, 120, 60, 0.5);
+  OnlineConsensus<Pose> online({.effort = 0.0});
+  add_all(online, made.graph);
+  const auto optimum = optimize(made.graph).poses;
+  const auto odometry = odometry_poses(made.graph, edge_roles(made.graph));
+  const double drift = isotherm_test::worst_difference(odometry, optimum);
+  EXPECT_LT(isotherm_test::worst_difference(online.graph().poses, optimum), 0.5 * drift);
+}
+
+TYPED_TEST(OnlineConsensusOf, PlacesPosesFromThoseThatAreTold) {
+  using Pose = TypeParam;
+  Random random(17);
+  const auto made = random_loop_graph<Pose>(random, 30, 6, 0.0);
+  OnlineConsensus<Pose> online;
+  const Index told = 12;
+  online.set_pose(made.graph.ids[told], made.truth[told]);
+  add_all(online, made.graph);
+  EXPECT_LT(isotherm_test::worst_difference(online.input().poses, made.truth), 1e-6);
   EXPECT_LT(isotherm_test::worst_difference(online.graph().poses, made.truth), 1e-6);
 }
 

@@ -118,10 +118,23 @@ TEST(BlockCholesky, LogDeterminantIsThatOfADenseFactor) {
   }
 }
 
+// A column of L with k entries costs k^2, additions and multiplications counted.
+TEST(BlockCholesky, TellsWhatAFactorisationTakes) {
+  Random random(9);
+  const auto sum_of_squares = [](double n) { return n * (n + 1.0) * (2.0 * n + 1.0) / 6.0; };
+  for (const FactorForm form : {FactorForm::fastest, FactorForm::supernodal}) {
+    const auto full = random_twin(random, 3, 3, Pairs{{0, 1}, {1, 2}, {0, 2}}, form).blocks;
+    EXPECT_EQ(full.flops(), sum_of_squares(9));
+    const auto apart = random_twin(random, 3, 4, Pairs{}, form).blocks;
+    EXPECT_EQ(apart.flops(), 4.0 * sum_of_squares(3));
+  }
+}
+
 TEST(BlockCholesky, Empty) {
   BlockCholesky blocks(3, 0, {});
   EXPECT_TRUE(blocks.factorise());
   EXPECT_EQ(blocks.log_determinant(), 0.0);
+  EXPECT_EQ(blocks.flops(), 0.0);
   EXPECT_EQ(blocks.solve(Eigen::VectorXd()).size(), 0);
 }
 

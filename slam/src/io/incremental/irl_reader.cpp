@@ -3,8 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/LU>
-
+#include "io/incremental/gtsam_covariance.hpp"
 #include "io/information_check.hpp"
 #include "io/pose_fields.hpp"
 
@@ -103,21 +102,14 @@ void IrlEntries::edge(GraphDraft<Pose>& draft, const ReadPose& read_pose, bool l
   text_.expect_line_end();
 }
 
-// In space GTSAM's covariance has rotation first. What is none is found out as indefinite.
 template <class Matrix>
 Matrix IrlEntries::information() {
-  constexpr int kDof = Matrix::RowsAtCompileTime;
-  constexpr int kFirst = kDof == 6 ? 3 : 0;
   Matrix covariance;
-  for (int row = 0; row < kDof; ++row) {
-    for (int column = 0; column < kDof; ++column) {
-      covariance((row + kFirst) % kDof, (column + kFirst) % kDof) =
-          text_.number("a covariance entry");
-    }
+  for (int k = 0; k < Matrix::SizeAtCompileTime; ++k) {
+    covariance(k / Matrix::RowsAtCompileTime, k % Matrix::RowsAtCompileTime) =
+        text_.number("a covariance entry");
   }
-  const Matrix inverse = covariance.inverse();
-  if (!inverse.allFinite()) return -Matrix::Identity();
-  return 0.5 * (inverse + inverse.transpose());
+  return information_from_gtsam(covariance);
 }
 
 FileDraft read_irl(TextReader& text, const ReadOptions& options) {

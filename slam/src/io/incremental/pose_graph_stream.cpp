@@ -4,22 +4,24 @@
 #include <deque>
 #include <functional>
 #include <istream>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
 #include "io/graph_draft.hpp"
 #include "io/incremental/irl_reader.hpp"
+#include "io/incremental/jrl_reader.hpp"
 #include "isotherm/slam/io/file_format.hpp"
 
 namespace isotherm::slam {
 namespace {
 
 template <class Pose>
-void add_entries(const detail::GraphDraft<Pose>& draft, const SourceLocation& where,
+void add_entries(const detail::GraphDraft<Pose>& draft, const std::string& path,
                  std::deque<StreamEntry>& entries) {
   if (!draft.indefinite.empty()) {
-    throw ParseError({where.path, where.line, draft.indefinite.front().column},
-                     draft.indefinite.front().token,
+    const auto& found = draft.indefinite.front();
+    throw ParseError({path, draft.constraints[found.constraint].line, found.column}, found.token,
                      "information matrix is not positive semi-definite");
   }
   for (const auto& vertex : draft.vertices) {
@@ -40,9 +42,9 @@ class PoseGraphStream::Reader {
   Reader(std::istream& in, std::string name) : in_(in), name_(std::move(name)) {}
 
   std::optional<StreamEntry> next() {
-    if (!text_) start();
+    if (!std::exchange(started_, true)) start();
     while (entries_.empty()) {
-      if (!text_->next_line()) return std::nullopt;
+      if (!text_ || !text_->next_line()) return std::nullopt;
       take(read_line_());
     }
     StreamEntry entry = std::move(entries_.front());
@@ -53,13 +55,14 @@ class PoseGraphStream::Reader {
   std::uint64_t line_number() const { return text_ ? text_->line_number() : 0; }
 
  private:
-  // An IRL file tells itself by its first five lines.
+  // An IRL file tells itself by its first five lines, a JRL file by its first letter.
   void start() {
     for (int k = 0; k < detail::IrlHeader::kLines; ++k) {
       std::string line;
       if (!std::getline(in_, line)) break;
       ahead_ += line + '\n';
     }
+    if (detail::is_jrl(ahead_)) return take_whole();
     const auto header = detail::irl_header(ahead_);
     if (header) ahead_.clear();
     text_.emplace(
@@ -76,6 +79,12 @@ class PoseGraphStream::Reader {
     }
   }
 
+  // In a JRL file one robot stands behind the other.
+  void take_whole() {
+    ahead_.append(std::istreambuf_iterator<char>(in_), {});
+    take(detail::read_jrl(name_, ahead_, options_));
+  }
+
   // As much as one line, so that nothing waits for the next.
   std::size_t fill(std::span<char> target) {
     if (ahead_.empty()) {
@@ -89,14 +98,14 @@ class PoseGraphStream::Reader {
   }
 
   void take(const detail::FileDraft& draft) {
-    const SourceLocation where{name_, text_->line_number(), 0};
     for (const auto& held : draft.fixed) entries_.push_back(StreamFixed{held.id});
-    add_entries(draft.planar, where, entries_);
-    add_entries(draft.spatial, where, entries_);
+    add_entries(draft.planar, name_, entries_);
+    add_entries(draft.spatial, name_, entries_);
   }
 
   std::istream& in_;
   std::string name_;
+  bool started_ = false;
   std::string ahead_;  // read and not yet handed on
   ReadOptions options_;
   std::optional<TextReader> text_;

@@ -14,6 +14,7 @@ enum class FileFormat {
   toro,
   edge_rows,  ///< rows of from to x y theta and the information's upper triangle
   irl,        ///< riSAM's incremental robot log
+  jrl,        ///< JSON robot log
   places,     ///< libRSF's `odom2` and `loop` lines: velocities and recognised places
   pyfg,
   tum,
@@ -31,12 +32,13 @@ enum class FileFormat {
   binary_graph,  ///< a plain graph, compact
 };
 
-constexpr std::array<EnumName<FileFormat>, 20> enum_names(FileFormat) {
+constexpr std::array<EnumName<FileFormat>, 21> enum_names(FileFormat) {
   return {{{FileFormat::unknown, "unknown"},
            {FileFormat::g2o, "g2o"},
            {FileFormat::toro, "toro"},
            {FileFormat::edge_rows, "edge-rows"},
            {FileFormat::irl, "irl"},
+           {FileFormat::jrl, "jrl"},
            {FileFormat::places, "places"},
            {FileFormat::pyfg, "pyfg"},
            {FileFormat::tum, "tum"},

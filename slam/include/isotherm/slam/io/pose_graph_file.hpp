@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,8 +26,10 @@ struct PoseGraphFile {
   /// Comments and records of kinds this library does not know, as they stand.
   std::vector<std::string> other_lines;
   std::vector<std::string> paths;  ///< of the files that it was read from
-  /// Whether each constraint is true, where a file says so (IRL); else empty.
+  /// Whether each constraint is true, where a file says so (IRL, JRL); else empty.
   std::vector<bool> correct = {};
+  /// The true poses, without constraints, where a file has them (JRL).
+  std::optional<AnyPoseGraph> truth = {};
 
   // A file is its graph where a graph is asked for.
   operator const AnyPoseGraph&() const& { return graph; }
@@ -36,8 +39,8 @@ struct PoseGraphFile {
 
 /// Reads a pose graph, telling the format by its content: g2o with SE2 or
 /// SE3:QUAT records, TORO, the poses of a PyFG file, whose names become GTSAM
-/// keys, or libRSF's velocities and recognised places. `path` may be "-" for standard input, and
-/// compressed.
+/// keys, IRL, JRL, or libRSF's velocities and recognised places. `path` may be "-" for standard
+/// input, and compressed.
 ///
 /// One pass; memory is a small multiple of the graph's.
 /// @throws FileError if the file cannot be read, ParseError if it is malformed,

@@ -32,7 +32,8 @@ using StreamEntry = std::variant<StreamVertex<Pose2>, StreamVertex<Pose3>, Strea
 
 /// Reads a pose graph entry by entry, as it comes: g2o, TORO or IRL, lines in order of time.
 /// Not a line more is taken from the stream than an entry needs, but for the first five, by
-/// which the format is told.
+/// which the format is told. JRL is read to its end first, since it has one robot behind the other,
+/// and replayed in order of time.
 class PoseGraphStream {
  public:
   /// `in` must outlive this object; `name` stands for it in messages.

@@ -24,7 +24,7 @@ struct OnlineOptions {
   /// Of the objective, the same as the batch's.
   ConsensusOptions consensus;
   /// Work on earlier verdicts while edges come, in times of the batch's on the same graph; in
-  /// [0, 100]. With 0 they are looked at again only when there are four times as many loops.
+  /// [0, 100]. With 0 they are looked at again only when there are twice as many loops.
   double effort = 1.0;
 
   /// @throws InvalidArgument naming the field that is out of range.
@@ -91,7 +91,8 @@ class OnlineConsensus {
   /// The verdict on every loop so far, as of now.
   spectral::EdgeVerdicts verdicts() const;
 
-  /// All vertices and edges so far; where there are loops, with the current estimate as poses.
+  /// All vertices and edges so far; where there are loops, with the current estimate as poses,
+  /// which takes one solution of the map where the search has not seen all loops yet.
   PoseGraph<Pose> graph() const;
 
   /// The same as added, without an estimate: what a file of the same edges holds.

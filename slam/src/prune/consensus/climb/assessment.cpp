@@ -14,8 +14,8 @@ constexpr double kSameWeight = 0.05;  // of its log
 constexpr double kHopeless = 50.0;  // log odds against, by a bound, beyond which none is solved for
 constexpr int kFixedPointSteps = 30;
 
-// What takes as long as to linearise and factorise so many links: covariances, of each link, and
-// the density of near pairs (measured).
+// Covariances, in times of a factorisation, and the density of near pairs, in links that are
+// linearised in that time (measured).
 constexpr double kCovarianceWork = 2.0;
 constexpr double kNearnessWork = 2500.0;
 
@@ -57,8 +57,7 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   add_prior(now);
   now.layout = estimate_.layout();
   if (pace_) {
-    const auto links = static_cast<double>(graph().steps.size() + graph().loops.size());
-    pace_(kCovarianceWork * links + (nearness_held_ ? 0.0 : kNearnessWork));
+    pace_(kCovarianceWork * estimate_.work() + (nearness_held_ ? 0.0 : kNearnessWork));
   }
   now.evidence = evidence(now);
   return true;

@@ -11,6 +11,9 @@ namespace {
 // Steps below this many standard deviations of the links they move do not matter.
 constexpr double kSettled = 0.1;
 
+// Operations of a factorisation that take as long as to linearise one link (measured).
+constexpr double kFlopsOfLink = 5000.0;
+
 }  // namespace
 
 template <class Pose>
@@ -45,7 +48,13 @@ void Estimate<Pose>::linearize(const CovarianceScale& scale) {
   if (!equations_->hessian().factorise()) {
     throw NumericalError("consensus", "the normal equations are not positive definite");
   }
-  if (pace_) pace_(static_cast<double>(equations_->constraint_count()));
+  if (pace_) pace_(work());
+}
+
+template <class Pose>
+double Estimate<Pose>::work() const {
+  return static_cast<double>(equations_->constraint_count()) +
+         equations_->hessian().flops() / kFlopsOfLink;
 }
 
 // Whether it was one that does not matter. The Newton decrement is the squared length of the

@@ -92,6 +92,9 @@ class Estimate {
   const spectral::BlockCholesky& factor() const { return equations_->hessian(); }
   const Gauge& gauge() const { return equations_->gauge(); }
 
+  /// What linearising and factorising takes, as Pace counts it.
+  double work() const;
+
   /// Number of poses that are free, as of the last update.
   Index variable_count() const { return equations_->hessian().block_count(); }
 

@@ -81,6 +81,9 @@ class BlockCholesky {
   /// @throws NumericalError without a successful factorise() before.
   double log_determinant() const;
 
+  /// Floating-point operations of one factorisation. Follows from the pattern alone.
+  double flops() const;
+
   /// A = L L' by dense blocks of columns, which part no block of rows.
   /// Valid until the next factorisation.
   /// @throws InvalidArgument unless the form is supernodal; NumericalError without a

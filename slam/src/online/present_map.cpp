@@ -1,0 +1,37 @@
+#include "online/present_map.hpp"
+
+#include <utility>
+
+#include "isotherm/base/error.hpp"
+#include "isotherm/slam/optimize/optimize.hpp"
+
+namespace isotherm::slam::detail {
+
+template <class Pose>
+void settle_poses(PoseGraph<Pose>& graph, const std::vector<bool>& is_step,
+                  const std::vector<bool>& used, const Accuracy<Pose>& accuracy) {
+  PoseGraph<Pose> part{graph.ids, graph.poses, {}, graph.fixed};
+  for (std::size_t k = 0; k < graph.constraints.size(); ++k) {
+    if (!is_step[k] && !used[k]) continue;
+    auto constraint = graph.constraints[k];
+    const auto& variances = is_step[k] ? accuracy.steps : accuracy.loops;
+    const typename Pose::Tangent root = variances.cwiseSqrt().cwiseInverse();
+    constraint.information = root.asDiagonal() * constraint.information * root.asDiagonal();
+    part.constraints.push_back(std::move(constraint));
+  }
+  OptimizeOptions options;
+  options.initialization = Initialization::file;
+  options.algorithm = OptimizeAlgorithm::levenberg_marquardt;
+  try {
+    graph.poses = optimize(part, options).poses;
+  } catch (const NumericalError&) {
+    return;
+  }
+}
+
+template void settle_poses(PoseGraph<Pose2>&, const std::vector<bool>&, const std::vector<bool>&,
+                           const Accuracy<Pose2>&);
+template void settle_poses(PoseGraph<Pose3>&, const std::vector<bool>&, const std::vector<bool>&,
+                           const Accuracy<Pose3>&);
+
+}  // namespace isotherm::slam::detail
