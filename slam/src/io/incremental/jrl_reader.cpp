@@ -192,9 +192,8 @@ class JrlReader {
     // Keys stand in the order of their digits, and robots may tell of each other's poses.
     auto& vertices = draft.vertices;
     std::ranges::stable_sort(vertices, {}, [](const auto& vertex) { return vertex.id; });
-    const auto repeated =
-        std::ranges::unique(vertices, [](const auto& a, const auto& b) { return a.id == b.id; });
-    vertices.erase(repeated.begin(), repeated.end());
+    const auto same = [](const auto& a, const auto& b) { return a.id == b.id; };
+    vertices.erase(std::unique(vertices.begin(), vertices.end(), same), vertices.end());
   }
 
   JsonReader json_;

@@ -34,8 +34,8 @@ class Neighbourhoods {
       std::ranges::sort(of_[v], [](const Neighbour& a, const Neighbour& b) {
         return std::pair(a.vertex, -a.truth) < std::pair(b.vertex, -b.truth);
       });
-      const auto repeated = std::ranges::unique(of_[v], {}, &Neighbour::vertex);
-      of_[v].erase(repeated.begin(), repeated.end());
+      const auto same = [](const Neighbour& a, const Neighbour& b) { return a.vertex == b.vertex; };
+      of_[v].erase(std::unique(of_[v].begin(), of_[v].end(), same), of_[v].end());
       for (const auto& neighbour : of_[v]) sizes_[v] += neighbour.truth;
     }
   }

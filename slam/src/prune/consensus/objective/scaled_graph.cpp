@@ -35,7 +35,8 @@ template <class Pose>
 std::size_t chain_count(const ReducedGraph<Pose>& graph) {
   std::vector<Index> chains = graph.chain;
   std::ranges::sort(chains);
-  return chains.size() - std::ranges::unique(chains).size();
+  chains.erase(std::unique(chains.begin(), chains.end()), chains.end());
+  return chains.size();
 }
 
 // log |H| of links none of which closes a cycle: a change of frame is of determinant 1.
