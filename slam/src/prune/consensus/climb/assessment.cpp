@@ -50,8 +50,7 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   found_.mixture = expected_mixture(now.scale.loops, now.shares);
   find_peak(now);
   if (!nearness_held_) found_.near = objective_.near(estimate_.poses());
-  now.redundancy = {};  // the more there is, the narrower is the peak
-  if (evidence(now) < least) return false;
+  if (ceiling(now) < least) return false;
   predict(now);
   weigh(now);
   add_prior(now);
@@ -61,6 +60,15 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   }
   now.evidence = evidence(now);
   return true;
+}
+
+// Of the evidence, before redundancy is known: the more there is, the narrower is the peak.
+template <class Pose>
+double Assessment<Pose>::ceiling(Explanation<Pose>& now) const {
+  const auto before = std::exchange(now.redundancy, {});
+  const double highest = evidence(now);
+  now.redundancy = before;
+  return highest;
 }
 
 template <class Pose>

@@ -63,6 +63,7 @@ class Assessment {
  private:
   void rescale(const Shapes<Pose>& shapes);
   void find_peak(Explanation<Pose>& now);
+  double ceiling(Explanation<Pose>& now) const;
   double evidence(const Explanation<Pose>& now) const;
   bool reweigh(Explanation<Pose>& now);
   double uncertainty(const Explanation<Pose>& now, Index loop) const;
