@@ -47,6 +47,9 @@ class Assessment {
   /// Back to where an earlier assessment ended, with what was found there.
   void restore(const Explanation<Pose>& before, Findings found);
 
+  /// The next assessment starts from this layout.
+  void stand_on(const typename Estimate<Pose>::Layout& layout) { estimate_.restore(layout); }
+
   const Estimate<Pose>& estimate() const noexcept { return estimate_; }
 
   const ReducedGraph<Pose>& graph() const noexcept { return found_.graph->reduced; }

@@ -112,7 +112,8 @@ Explanation<Pose> Climb<Pose>::nothing() {
 }
 
 // That of an earlier climb which passed here, which explains the same loops better, or which holds
-// all loops of this one and explains them better, by scales too where they were `learnt` from them.
+// all loops of this one and explains them better, by its scales and map too where those were
+// `learnt` from them.
 template <class Pose>
 const Explanation<Pose>* Climb<Pose>::peak_ahead(bool learnt) {
   for (const Passed& passed : passed_) {
@@ -122,7 +123,7 @@ const Explanation<Pose>* Climb<Pose>::peak_ahead(bool learnt) {
     if (now_.accepted == peak.accepted) {
       if (!outdoes(peak)) return &peak;
     } else if (learnt && is_part(now_.accepted, peak.accepted)) {
-      if (try_scales(peak.scale, peak.shapes, peak.shares)) return &peak;
+      if (try_scales(peak.scale, peak.shapes, peak.shares, &peak.layout)) return &peak;
     }
   }
   return nullptr;
@@ -159,6 +160,8 @@ void Climb<Pose>::start(const CovarianceScale& scale) {
   now_.weights.assign(loops, 1.0);
   dropped_.assign(loops, false);
   learnt_from_ = 0;
+  longest_ = std::max(longest_, passed_.size() - began_);
+  began_ = passed_.size();
   assessment_.start_over();
   assessment_.assess(now_);
   if (scale == CovarianceScale{}) nothing_ = now_;
@@ -181,10 +184,17 @@ const Explanation<Pose>* Climb<Pose>::grow() {
     const double enough = std::max(summit() - best_.evidence, 0.0) / kPatience;
     const bool grows = 2 * accepted_count() >= 3 * had;
     vain = grows || best_.evidence - before > enough ? 0 : vain + 1;
-    if (vain == kPatience) return nullptr;
+    if (vain == kPatience || has_fallen_behind()) return nullptr;
   }
   settled_ = false;
   return nullptr;
+}
+
+// Below the highest peak after more than the longest climb to any.
+template <class Pose>
+bool Climb<Pose>::has_fallen_behind() const {
+  const std::size_t enough = std::max<std::size_t>(longest_, kPatience);
+  return best_.evidence < summit() && passed_.size() - began_ > enough;
 }
 
 // False where no move is left.
@@ -311,17 +321,18 @@ bool Climb<Pose>::learn_more_than(double gain) {
   return false;
 }
 
-// Whether they explain better, or else nothing changes. Scales at which the normal equations break
-// down explain nothing.
+// Whether they explain better, with the map sought `from` there, or else nothing changes. Scales at
+// which the normal equations break down explain nothing.
 template <class Pose>
 bool Climb<Pose>::try_scales(const CovarianceScale& scale, const Shapes<Pose>& shapes,
-                             const ScaleShares& shares) {
+                             const ScaleShares& shares, const Layout* from) {
   const Explanation<Pose> before = now_;
   const auto found = assessment_.findings();
   const auto failed = failed_;
   now_.scale = scale;
   now_.shapes = shapes;
   now_.shares = shares;
+  if (from) assessment_.stand_on(*from);
   bool better = false;
   try {
     better = assess(before.evidence + kBetter);

@@ -55,6 +55,8 @@ class Climb {
  private:
   enum Trial { lesson, lesson_of_scales, wider_loops, sharper_loops };
 
+  using Layout = typename Estimate<Pose>::Layout;
+
   // Where a climb was, and the number of the peak that it led to; of this one that of the next.
   struct Passed {
     std::vector<bool> accepted;
@@ -70,6 +72,7 @@ class Climb {
   bool outdoes(const Explanation<Pose>& peak);
   double summit() const;
   const Explanation<Pose>* grow();
+  bool has_fallen_behind() const;
   bool move();
   bool shift();
   bool assess(double least = -std::numeric_limits<double>::infinity());
@@ -82,7 +85,7 @@ class Climb {
   bool learn_more_than(double gain);
   bool weigh_otherwise();
   bool try_scales(const CovarianceScale& scale, const Shapes<Pose>& shapes,
-                  const ScaleShares& shares);
+                  const ScaleShares& shares, const Layout* from = nullptr);
   void predict_runs();
   void note(std::size_t accepted, std::size_t dropped);
   void tell_progress() const;
@@ -97,6 +100,8 @@ class Climb {
   std::vector<double> run_density_;       // log p(z | the loop before in its run)
   std::vector<Explanation<Pose>> peaks_;  // of earlier climbs
   std::vector<Passed> passed_;
+  std::size_t began_ = 0;         // of those passed, this climb
+  std::size_t longest_ = 0;       // of earlier climbs
   std::vector<bool> dropped_;     // since the climb last rose; not tried again
   std::size_t learnt_from_ = 0;   // loops, at the last lesson
   std::array<bool, 4> failed_{};  // trials of other scales here; not repeated until a change

@@ -16,8 +16,7 @@ constexpr double kMostExpectedFalse = 0.5;
 constexpr double kFalseShare = 1e-3;
 
 // Every loop accepted sharpens what is predicted of the rest and tells how accurate they are.
-constexpr std::size_t kGrowth = 3;
-constexpr std::size_t kFew = 10;  // loops, that tell nothing of it
+constexpr std::size_t kGrowth = 30;
 
 // Parents of a forest for find_root().
 std::vector<Index> each_by_itself(std::size_t count) {
@@ -93,7 +92,8 @@ Group most_certain(std::vector<Group> groups, std::size_t accepted) {
       std::max(kMostExpectedFalse, kFalseShare * static_cast<double>(accepted));
   for (const auto& [members, gain, parts] : groups) {
     expected_false += 1.0 / (1.0 + std::exp(gain));
-    const bool many = all.loops.size() + members.size() > kGrowth * std::max(accepted, kFew);
+    const bool many =
+        all.loops.size() + members.size() > kGrowth * std::max<std::size_t>(accepted, 1);
     if (!all.loops.empty() && (many || expected_false > most_false)) break;
     if (parts.first != parts.second) {
       const Index first = find_root(part, parts.first);

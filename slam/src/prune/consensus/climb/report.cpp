@@ -10,8 +10,6 @@
 namespace isotherm::slam::detail {
 namespace {
 
-constexpr double kNegligible = -20.0;  // log weight of an explanation
-
 // Each loop's log odds by all explanations, by their evidence; the best is first. One at about the
 // scale of a better one that keeps the same loops is the same peak.
 template <class Pose>
@@ -24,7 +22,7 @@ std::vector<double> mean_log_odds(const std::vector<Explanation<Pose>>& found) {
     const bool same = std::any_of(found.begin(), at, [&](const auto& better) {
       return better.accepted == at->accepted && about_the_same(better.scale, at->scale);
     });
-    if (same || log_weight < kNegligible) continue;
+    if (same) continue;
     for (std::size_t k = 0; k < log_true.size(); ++k) {
       const double log_odds = at->standings[k].log_odds;
       log_true[k] = log_sum(log_true[k], log_weight - log_sum(0.0, -log_odds));
