@@ -12,12 +12,6 @@ namespace {
 
 constexpr Index kBlock = 16;
 
-// Only edges between neighbours make a chain; a user may trust others as well.
-template <class Pose>
-bool is_step(const Constraint<Pose>& constraint) {
-  return std::abs(constraint.from - constraint.to) == 1;
-}
-
 // The step from the lower to the higher vertex, whatever the edge's direction.
 template <class Pose>
 UncertainPose<Pose> forward_step(const Constraint<Pose>& constraint) {
@@ -41,21 +35,30 @@ UncertainPose<Pose> inverse(const UncertainPose<Pose>& pose) {
 }
 
 template <class Pose>
+std::vector<std::optional<Index>> chain_edges(const PoseGraph<Pose>& graph,
+                                              const EdgeRoles& roles) {
+  std::vector<std::optional<Index>> edges(std::max<Index>(graph.vertex_count(), 1) - 1);
+  for (const Index k : roles.odometry) {
+    const auto& constraint = graph.constraints[k];
+    if (std::abs(constraint.from - constraint.to) != 1) continue;
+    auto& edge = edges[std::min(constraint.from, constraint.to)];
+    if (!edge) edge = k;
+  }
+  return edges;
+}
+
+template <class Pose>
 OdometryChain<Pose>::OdometryChain(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
   const Index n = graph.vertex_count();
   if (n == 0) return;
   steps_.resize(n - 1);
-  std::vector<bool> joined(n - 1, false);
-  for (const Index k : roles.odometry) {
-    const auto& constraint = graph.constraints[k];
-    const Index first = std::min(constraint.from, constraint.to);
-    if (!is_step(constraint) || joined[first]) continue;
-    joined[first] = true;
-    steps_[first] = forward_step(constraint);
-  }
-
   chain_.assign(n, 0);
-  for (Index v = 1; v < n; ++v) chain_[v] = chain_[v - 1] + (joined[v - 1] ? 0 : 1);
+  const auto edges = chain_edges(graph, roles);
+  for (Index v = 1; v < n; ++v) {
+    const auto& edge = edges[v - 1];
+    if (edge) steps_[v - 1] = forward_step(graph.constraints[*edge]);
+    chain_[v] = chain_[v - 1] + (edge ? 0 : 1);
+  }
 
   // Blocks across a gap between chains are never asked for.
   std::vector<UncertainPose<Pose>> blocks((n - 1) / kBlock);
@@ -116,20 +119,14 @@ UncertainPose<Pose> OdometryChain<Pose>::forward(Index from, Index to) const {
 
 template <class Pose>
 std::vector<Pose> odometry_poses(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
-  std::vector<const Constraint<Pose>*> step_to(graph.ids.size(), nullptr);
-  for (const Index k : roles.odometry) {
-    const auto& constraint = graph.constraints[k];
-    if (!is_step(constraint)) continue;
-    auto& step = step_to[std::max(constraint.from, constraint.to)];
-    if (step == nullptr) step = &constraint;
-  }
+  const auto edges = chain_edges(graph, roles);
   std::vector<Pose> poses(graph.ids.size());
   for (std::size_t v = 0; v < poses.size(); ++v) {
-    if (step_to[v] == nullptr) {
+    if (v == 0 || !edges[v - 1]) {
       if (!graph.poses.empty()) poses[v] = graph.poses[v];
       continue;
     }
-    const auto& step = *step_to[v];
+    const auto& step = graph.constraints[*edges[v - 1]];
     poses[v] = poses[v - 1] * (step.from < step.to ? step.T_from_to : step.T_from_to.inverse());
   }
   return poses;
@@ -141,6 +138,8 @@ template UncertainPose<Pose2> compose(const UncertainPose<Pose2>&, const Uncerta
 template UncertainPose<Pose3> compose(const UncertainPose<Pose3>&, const UncertainPose<Pose3>&);
 template UncertainPose<Pose2> inverse(const UncertainPose<Pose2>&);
 template UncertainPose<Pose3> inverse(const UncertainPose<Pose3>&);
+template std::vector<std::optional<Index>> chain_edges(const PoseGraph<Pose2>&, const EdgeRoles&);
+template std::vector<std::optional<Index>> chain_edges(const PoseGraph<Pose3>&, const EdgeRoles&);
 template std::vector<Pose2> odometry_poses(const PoseGraph<Pose2>&, const EdgeRoles&);
 template std::vector<Pose3> odometry_poses(const PoseGraph<Pose3>&, const EdgeRoles&);
 

@@ -1,7 +1,5 @@
 #include "prune/consensus/estimate/estimate.hpp"
 
-#include <numeric>
-
 #include <gtest/gtest.h>
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -101,8 +99,8 @@ TYPED_TEST(EstimateOf, CovariancesAreThoseOfTheWholeGraph) {
   auto keep = std::vector<bool>(made.graph.constraints.size(), true);
   keep[roles.candidates[1]] = keep[roles.candidates[4]] = false;
   const DenseOracle<Pose> oracle(filter_constraints(made.graph, keep), made.truth);
-  std::vector<Index> all(reduced.loops.size());
-  std::iota(all.begin(), all.end(), 0);
+  std::vector<const Link<Pose>*> all;
+  for (const auto& loop : reduced.loops) all.push_back(&loop);
   const auto covariances = estimate.relative_covariances(all);
   for (std::size_t k = 0; k < all.size(); ++k) {
     const auto& loop = reduced.loops[k];
@@ -139,7 +137,8 @@ TYPED_TEST(EstimateOf, CovariancesFollowTheScaleAndWhatIsTakenBack) {
   Random random(15);
   const auto made = random_loop_graph<Pose>(random, 40, 8, 0.1, 1e6);
   const auto reduced = reduce(made.graph, edge_roles(made.graph));
-  const std::vector<Index> asked = {0, 3, 7};
+  const std::vector<const Link<Pose>*> asked = {&reduced.loops[0], &reduced.loops[3],
+                                                &reduced.loops[7]};
   Estimate<Pose> estimate(reduced);
   const auto covariances = [&](const std::vector<bool>& accepted, const CovarianceScale& scale) {
     estimate.update(accepted, scale, 20);

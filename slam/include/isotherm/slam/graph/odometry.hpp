@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "isotherm/slam/graph/pose_graph.hpp"
@@ -22,6 +23,11 @@ UncertainPose<Pose> compose(const UncertainPose<Pose>& first, const UncertainPos
 template <class Pose>
 UncertainPose<Pose> inverse(const UncertainPose<Pose>& pose);
 
+/// Of each vertex but the last, the edge that joins it to the next one in its odometry chain: the
+/// first of roles.odometry between the two, if any.
+template <class Pose>
+std::vector<std::optional<Index>> chain_edges(const PoseGraph<Pose>& graph, const EdgeRoles& roles);
+
 /// Relative poses along odometry, with covariance, in O(log n) each.
 ///
 /// The composition of every block of 16, 32, 64, ... steps is kept, and a query
@@ -30,8 +36,7 @@ UncertainPose<Pose> inverse(const UncertainPose<Pose>& pose);
 template <class Pose>
 class OdometryChain {
  public:
-  /// Uses the first of roles.odometry between each two neighbours in the order of
-  /// ids; trusted edges between other vertices are left out. O(n).
+  /// Uses chain_edges(); trusted edges between other vertices are left out. O(n).
   OdometryChain(const PoseGraph<Pose>& graph, const EdgeRoles& roles);
 
   Index vertex_count() const noexcept { return static_cast<Index>(chain_.size()); }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "prune/consensus/objective/loop_gain.hpp"
@@ -174,13 +175,32 @@ void Assessment<Pose>::predict(Explanation<Pose>& now) {
     found_.covariances[k] = graph().odometry_covariance[k] * now.scale.odometry;
     standing.evidence = 0.0;
   }
-  const auto covariances = estimate_.relative_covariances(solved);
-  for (std::size_t i = 0; i < solved.size(); ++i) found_.covariances[solved[i]] = covariances[i];
+  solve(now, solved, !alone);
   found_.held.assign(now.accepted.size(), 0.0);
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
     if (now.accepted[k]) found_.held[k] = now.weights[k] / now.scale.loops;
   }
   found_.held_scale = now.scale.odometry;
+}
+
+// Covariances of these loops, and unless odometry is on its own what it tells of its accuracy.
+template <class Pose>
+void Assessment<Pose>::solve(Explanation<Pose>& now, const std::vector<Index>& loops,
+                             bool odometry) {
+  std::vector<const Link<Pose>*> links;
+  for (const Index k : loops) links.push_back(&graph().loops[k]);
+  if (odometry) {
+    for (const auto& step : graph().steps) links.push_back(&step);
+  }
+  const auto covariances = estimate_.relative_covariances(links);
+  for (std::size_t i = 0; i < loops.size(); ++i) found_.covariances[loops[i]] = covariances[i];
+  OdometryComponent<Pose> told;
+  if (odometry) {
+    told = objective_.odometry(now, *found_.graph, estimate_,
+                               std::span(covariances).subspan(loops.size()));
+  }
+  now.odometry_cost = told.cost;
+  now.redundancy.odometry = told.redundancy;
 }
 
 template <class Pose>
@@ -207,15 +227,11 @@ typename Pose::Tangent Assessment<Pose>::redundancy(const Explanation<Pose>& now
 
 template <class Pose>
 void Assessment<Pose>::find_redundancy(Explanation<Pose>& now) const {
-  auto constraints = static_cast<double>(graph().steps.size());
-  now.redundancy = {};
+  now.redundancy.loops.setZero();
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
     if (!now.accepted[k] || graph().loops[k].a == graph().loops[k].b) continue;
     now.redundancy.loops += redundancy(now, static_cast<Index>(k));
-    constraints += 1.0;
   }
-  const double each = constraints - static_cast<double>(estimate_.variable_count());
-  now.redundancy.odometry = (each - now.redundancy.loops.array()).max(0.0);
 }
 
 // Given all loops but itself, in what is known of the accuracy of odometry, too.

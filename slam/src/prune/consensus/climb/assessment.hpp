@@ -73,6 +73,7 @@ class Assessment {
   void weigh_new(Explanation<Pose>& now);
   bool bounds(const Explanation<Pose>& now) const;
   void predict(Explanation<Pose>& now);
+  void solve(Explanation<Pose>& now, const std::vector<Index>& loops, bool odometry);
   void weigh(Explanation<Pose>& now);
   void find_redundancy(Explanation<Pose>& now) const;
   Standing accepted_standing(const Explanation<Pose>& now, Index loop) const;

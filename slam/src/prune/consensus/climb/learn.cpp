@@ -164,8 +164,7 @@ Lesson<Pose> learn(const Assessment<Pose>& assessment, const Explanation<Pose>& 
   auto residuals = residuals_of(assessment, explanation);
   Tangent loops_cost = Tangent::Zero();
   for (const auto& residual : residuals) loops_cost += residual.weight * residual.parts;
-  const Tangent odometry_cost = assessment.estimate().odometry_cost();
-  const Component<Tangent> odometry{odometry_cost.cwiseProduct(shapes.odometry),
+  const Component<Tangent> odometry{explanation.odometry_cost.cwiseProduct(shapes.odometry),
                                     redundancy.odometry};
   const Component<Tangent> loops{loops_cost.cwiseProduct(shapes.loops), redundancy.loops};
   const Tangent odometry_before = log_scales(scale.odometry, shapes.odometry);

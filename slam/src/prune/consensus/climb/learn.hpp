@@ -16,9 +16,9 @@ struct Lesson {
 /// The factors on the covariances of odometry, of loops and of each of their coordinates at which
 /// the evidence is highest, to first order: variance components (Helmert), cost over redundancy,
 /// drawn towards the file by their prior (scale_prior.hpp). And the shares of loops as accurate as
-/// most and as stated under which the residuals are likeliest (expectation maximisation). What
-/// odometry leaves to each coordinate is known roughly, so that
-/// with other shapes a lesson may be worse: `same_shapes` learns factors on all coordinates alone.
+/// most and as stated under which the residuals are likeliest (expectation maximisation). To first
+/// order in the logs, so that with far other shapes a lesson may be worse: `same_shapes` learns
+/// factors on all coordinates alone.
 template <class Pose>
 Lesson<Pose> learn(const Assessment<Pose>& assessment, const Explanation<Pose>& explanation,
                    bool same_shapes);

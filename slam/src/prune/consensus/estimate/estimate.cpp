@@ -105,21 +105,19 @@ std::pair<Index, Index> Estimate<Pose>::parts(const Link<Pose>& loop) const {
 // d(T_a^-1 T_b) = -Ad d_a + d_b, with Ad the adjoint of T_b_a.
 template <class Pose>
 std::vector<typename Pose::Matrix> Estimate<Pose>::relative_covariances(
-    std::span<const Index> loops) const {
+    std::span<const Link<Pose>* const> links) const {
   const std::vector<Index>& variable = equations_->gauge().variable;
   std::vector<std::pair<Index, Index>> pairs;
-  pairs.reserve(loops.size());
-  for (const Index k : loops) {
-    const auto& loop = graph_->loops[k];
-    const bool turns_back = loop.a == loop.b;
-    pairs.emplace_back(turns_back ? -1 : variable[loop.a], turns_back ? -1 : variable[loop.b]);
+  pairs.reserve(links.size());
+  for (const auto* link : links) {
+    const bool turns_back = link->a == link->b;
+    pairs.emplace_back(turns_back ? -1 : variable[link->a], turns_back ? -1 : variable[link->b]);
   }
   const auto known = spectral::pair_covariances<Pose::kDof>(equations_->hessian(), pairs);
   std::vector<Matrix> covariances;
-  covariances.reserve(loops.size());
-  for (std::size_t k = 0; k < loops.size(); ++k) {
-    const auto& loop = graph_->loops[loops[k]];
-    const Matrix adjoint = (poses_[loop.b].inverse() * poses_[loop.a]).adjoint();
+  covariances.reserve(links.size());
+  for (std::size_t k = 0; k < links.size(); ++k) {
+    const Matrix adjoint = (poses_[links[k]->b].inverse() * poses_[links[k]->a]).adjoint();
     const Matrix across = adjoint * known[k].cross;
     covariances.push_back(adjoint * known[k].first * adjoint.transpose() + known[k].second -
                           across - across.transpose());
@@ -128,11 +126,11 @@ std::vector<typename Pose::Matrix> Estimate<Pose>::relative_covariances(
 }
 
 template <class Pose>
-typename Pose::Tangent Estimate<Pose>::odometry_cost() const {
-  Tangent cost = Tangent::Zero();
+double Estimate<Pose>::odometry_cost() const {
+  double cost = 0.0;
   for (const auto& step : graph_->steps) {
     const Tangent r = residual(step);
-    cost += r.cwiseProduct(step.information * r);
+    cost += r.dot(step.information * r);
   }
   return cost;
 }

@@ -75,12 +75,12 @@ class Estimate {
   /// links join them.
   std::pair<Index, Index> parts(const Link<Pose>& loop) const;
 
-  /// Covariances of T_a^-1 T_b, one each of `loops`, as perturbations on the right, from
+  /// Covariances of T_a^-1 T_b, one each of `links`, as perturbations on the right, from
   /// the factor of the last update. The ends of each must be connected.
-  std::vector<Matrix> relative_covariances(std::span<const Index> loops) const;
+  std::vector<Matrix> relative_covariances(std::span<const Link<Pose>* const> links) const;
 
-  /// r' Omega r summed over odometry, by coordinate, in units of the file's covariances.
-  Tangent odometry_cost() const;
+  /// r' Omega r summed over odometry, in units of the graph's covariances.
+  double odometry_cost() const;
 
   /// log|H|, of the factor of the last update.
   double log_determinant() const { return equations_->hessian().log_determinant(); }

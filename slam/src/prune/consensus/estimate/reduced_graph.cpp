@@ -1,6 +1,7 @@
 #include "prune/consensus/estimate/reduced_graph.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "isotherm/slam/graph/information.hpp"
 
@@ -19,17 +20,13 @@ std::vector<Index> endpoints(const std::vector<bool>& touched) {
 // and repeats.
 template <class Pose>
 std::vector<Index> trusted_beside_chains(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
-  std::vector<bool> joined(graph.ids.size(), false);
-  std::vector<Index> others;
-  for (const Index k : roles.odometry) {
-    const auto& constraint = graph.constraints[k];
-    const auto [first, second] = std::minmax(constraint.from, constraint.to);
-    if (second - first == 1 && !joined[first]) {
-      joined[first] = true;
-    } else {
-      others.push_back(k);
-    }
+  std::vector<bool> in_chain(graph.constraints.size(), false);
+  for (const auto& edge : chain_edges(graph, roles)) {
+    if (edge) in_chain[*edge] = true;
   }
+  std::vector<Index> others;
+  std::ranges::copy_if(roles.odometry, std::back_inserter(others),
+                       [&](Index k) { return !in_chain[k]; });
   return others;
 }
 
@@ -71,6 +68,7 @@ ReducedGraph<Pose> reduce(const PoseGraph<Pose>& graph, const EdgeRoles& roles) 
     reduced.steps.push_back(
         {a, b, path.T, path.covariance, covariance_from_information<Pose::kDof>(path.covariance)});
   }
+  reduced.contracted = reduced.steps.size();
   for (const Index k : others) {
     if (graph.constraints[k].from != graph.constraints[k].to) {
       reduced.steps.push_back(link(graph.constraints[k], node));

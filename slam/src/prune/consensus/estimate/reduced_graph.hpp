@@ -30,6 +30,7 @@ struct ReducedGraph {
   std::vector<Index> chain;       ///< odometry chain a node
   std::vector<Pose> poses;        ///< chained odometry
   std::vector<Link<Pose>> steps;  ///< contracted odometry, then other trusted edges
+  std::size_t contracted = 0;     ///< of the steps, along chains: the first
   std::vector<Link<Pose>> loops;  ///< one a candidate, in order
   /// Loops: covariance of T_a^-1 T_b under odometry alone, as a perturbation on
   /// the right; beyond every map where the ends are on different chains.

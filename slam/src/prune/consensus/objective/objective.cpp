@@ -75,12 +75,12 @@ double Objective<Pose>::evidence(const Explanation<Pose>& explanation,
         log_alternative(static_cast<Index>(k), near, scale.loops, explanation.shapes.loops);
     kept += 1.0;
   }
-  const double odometry_determinant =
-      graph.log_determinant - Pose::kDof * graph.variables * std::log(scale.odometry);
+  const auto steps = static_cast<double>(graph.reduced.steps.size());
+  const double log_information =
+      graph.log_information - Pose::kDof * steps * std::log(scale.odometry);
   const auto joined = static_cast<double>(estimate.variable_count() - graph.variables);
-  return loops_fit(explanation, graph, estimate) -
-         0.5 * estimate.odometry_cost().sum() / scale.odometry -
-         0.5 * (estimate.log_determinant() - odometry_determinant) +
+  return loops_fit(explanation, graph, estimate) - 0.5 * estimate.odometry_cost() / scale.odometry -
+         0.5 * (estimate.log_determinant() - log_information) +
          joined * (0.5 * Pose::kDof * kLog2Pi - log_volume_) - alternatives +
          log_beta_binomial(kept, static_cast<double>(explanation.accepted.size())) +
          log_scale_peak(explanation);

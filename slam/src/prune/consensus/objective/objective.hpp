@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "prune/consensus/estimate/estimate.hpp"
+#include "prune/consensus/estimate/odometry_component.hpp"
 #include "prune/consensus/objective/error_scales.hpp"
 #include "prune/consensus/objective/near_density.hpp"
 #include "prune/consensus/objective/runs.hpp"
@@ -32,6 +34,7 @@ struct Explanation {
   std::vector<double> weights;  ///< of the loops' information, by their scales; one a loop
   double scale_evidence = 0.0;  ///< ErrorScale::evidence, summed over the accepted ones
   Redundancy<Pose> redundancy;  ///< of odometry and of the accepted loops
+  typename Pose::Tangent odometry_cost = Pose::Tangent::Zero();  ///< OdometryComponent::cost
   typename Estimate<Pose>::Layout layout;
   std::vector<Standing> standings;  ///< of each loop, given all others
   double evidence = 0.0;            ///< Objective::evidence()
@@ -39,10 +42,12 @@ struct Explanation {
 
 /// The log evidence of an explanation: of the accepted set A and the scales,
 ///
-///     log p(z_A | odometry, scales) - sum over A of log (f k_mean / k)
+///     log p(z_A, odometry | scales) - sum over A of log (f k_mean / k)
 ///         + log pi(A) + log pi(scales)
 ///
-/// with p by Laplace's approximation from the factor that the estimate holds, f and k as in
+/// with p by Laplace's approximation from the factor that the estimate holds, without what does not
+/// depend on A and the scales (of odometry without cycles that is all of its own: p is that of z_A
+/// given odometry), f and k as in
 /// NearDensity, pi(A) the Beta-binomial of a fraction of which nothing is known. The scales are
 /// log-normal around what the file states (scale_prior.hpp) and integrated over by Laplace's
 /// approximation. Which loops are as accurate as most
@@ -85,6 +90,14 @@ class Objective {
     if (!calibrate_) return {0.0, 0.0};
     return {detail::scale_deviation(redundancy.odometry.sum()),
             detail::scale_deviation(redundancy.loops.sum())};
+  }
+
+  /// `estimate` must have settled on the explanation's loops and scales, on `graph`.
+  OdometryComponent<Pose> odometry(const Explanation<Pose>& explanation,
+                                   const ScaledGraph<Pose>& graph, const Estimate<Pose>& estimate,
+                                   std::span<const typename Pose::Matrix> covariances) const {
+    return odometry_component(graph_, roles_, explanation.shapes.odometry,
+                              explanation.scale.odometry, graph.reduced, estimate, covariances);
   }
 
   /// log of the volume of relative poses that the map of odometry allows.

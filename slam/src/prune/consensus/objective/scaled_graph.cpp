@@ -1,12 +1,12 @@
 #include "prune/consensus/objective/scaled_graph.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <utility>
+#include <numeric>
 #include <vector>
 
 #include <Eigen/Cholesky>
 
+#include "graph/find_root.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
 
 namespace isotherm::slam::detail {
@@ -30,16 +30,21 @@ PoseGraph<Pose> with_shapes(PoseGraph<Pose> graph, const EdgeRoles& roles,
   return graph;
 }
 
-// Of those that have nodes.
+// Poses that follow from others by the steps: all but one of each part.
 template <class Pose>
-std::size_t chain_count(const ReducedGraph<Pose>& graph) {
-  std::vector<Index> chains = graph.chain;
-  std::ranges::sort(chains);
-  chains.erase(std::unique(chains.begin(), chains.end()), chains.end());
-  return chains.size();
+Index free_poses(const ReducedGraph<Pose>& graph) {
+  std::vector<Index> parent(graph.vertex.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  Index joins = 0;
+  for (const auto& step : graph.steps) {
+    const Index a = find_root(parent, step.a);
+    const Index b = find_root(parent, step.b);
+    if (a != b) ++joins;
+    parent[a] = b;
+  }
+  return joins;
 }
 
-// log |H| of links none of which closes a cycle: a change of frame is of determinant 1.
 template <class Pose>
 double log_information(const std::vector<Link<Pose>>& links) {
   double sum = 0.0;
@@ -57,16 +62,8 @@ ScaledGraph<Pose> scaled_graph(const PoseGraph<Pose>& graph, const EdgeRoles& ro
   ScaledGraph<Pose> scaled{shapes == Shapes<Pose>{}
                                ? reduce(graph, roles)
                                : reduce(with_shapes(graph, roles, shapes), roles)};
-  const ReducedGraph<Pose>& reduced = scaled.reduced;
-  if (reduced.steps.size() + chain_count(reduced) == reduced.vertex.size()) {
-    scaled.log_determinant = log_information(reduced.steps);
-    scaled.variables = static_cast<Index>(reduced.steps.size());
-    return scaled;
-  }
-  Estimate<Pose> odometry(reduced);
-  odometry.update(std::vector<bool>(reduced.loops.size(), false), {}, 0);
-  scaled.log_determinant = odometry.log_determinant();
-  scaled.variables = odometry.variable_count();
+  scaled.log_information = log_information(scaled.reduced.steps);
+  scaled.variables = free_poses(scaled.reduced);
   return scaled;
 }
 

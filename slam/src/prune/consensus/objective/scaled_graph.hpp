@@ -19,12 +19,12 @@ struct Shapes {
 template <class Pose>
 double rotation_against_translation(const typename Pose::Tangent& shape);
 
-/// A reduced graph with covariances other than stated, and what odometry alone adds to the
-/// evidence there.
+/// A reduced graph with covariances other than stated, and what of odometry the evidence needs
+/// there.
 template <class Pose>
 struct ScaledGraph {
   ReducedGraph<Pose> reduced;
-  double log_determinant = 0.0;  ///< log |H| of odometry
+  double log_information = 0.0;  ///< log |Omega|, summed over its steps
   Index variables = 0;           ///< poses that are free in it
 
   /// Whether one path of trusted edges at most joins any two poses.

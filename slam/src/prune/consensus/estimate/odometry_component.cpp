@@ -1,0 +1,80 @@
+#include "prune/consensus/estimate/odometry_component.hpp"
+
+#include "isotherm/slam/graph/information.hpp"
+#include "isotherm/slam/graph/odometry.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+/// The error of a step at the peak, and what of it is left over.
+template <class Pose>
+struct StepError {
+  typename Pose::Tangent pull;  // Omega r
+  typename Pose::Matrix spare;  // Omega - Omega J C J' Omega / scale
+};
+
+template <class Pose>
+StepError<Pose> step_error(const Link<Pose>& step, const typename Pose::Tangent& r,
+                           const typename Pose::Matrix& C, double scale) {
+  const auto J = residual_jacobian<Pose>(r);
+  const typename Pose::Matrix fitted = step.information * J * C * J.transpose();
+  return {step.information * r, step.information - fitted * step.information / scale};
+}
+
+// Of an edge with covariance Sigma whose error `carry` leads to the end of its step: a factor on
+// coordinate d adds (e_d e_d' Sigma + Sigma e_d e_d') / 2 to Sigma.
+template <class Pose>
+void add_edge(const StepError<Pose>& step, const typename Pose::Matrix& carry,
+              const typename Pose::Matrix& Sigma, OdometryComponent<Pose>& sum) {
+  const typename Pose::Matrix reach = carry * Sigma;
+  sum.cost += (carry.transpose() * step.pull).cwiseProduct(reach.transpose() * step.pull);
+  sum.redundancy += carry.cwiseProduct(step.spare * reach).colwise().sum().transpose();
+}
+
+}  // namespace
+
+template <class Pose>
+OdometryComponent<Pose> odometry_component(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                                           const typename Pose::Tangent& shape, double scale,
+                                           const ReducedGraph<Pose>& reduced,
+                                           const Estimate<Pose>& estimate,
+                                           std::span<const typename Pose::Matrix> covariances) {
+  using Matrix = typename Pose::Matrix;
+  const auto edges = chain_edges(graph, roles);
+  const typename Pose::Tangent root = shape.cwiseSqrt();
+  OdometryComponent<Pose> sum;
+  for (std::size_t k = 0; k < reduced.steps.size(); ++k) {
+    const auto& step = reduced.steps[k];
+    const auto error = step_error<Pose>(step, estimate.residual(step), covariances[k], scale);
+    if (k >= reduced.contracted) {  // an edge by itself
+      add_edge<Pose>(error, Matrix::Identity(), step.covariance, sum);
+      continue;
+    }
+    Pose onward;  // from the edge's end to the step's
+    for (Index v = reduced.vertex[step.b]; v > reduced.vertex[step.a]; --v) {
+      const auto& edge = graph.constraints[*edges[v - 1]];
+      const bool forward = edge.from < edge.to;
+      const Matrix Sigma = root.asDiagonal() *
+                           covariance_from_information<Pose::kDof>(edge.information) *
+                           root.asDiagonal();
+      const Matrix carry = onward.inverse().adjoint();
+      add_edge<Pose>(error, forward ? carry : Matrix(carry * edge.T_from_to.adjoint()), Sigma, sum);
+      onward = (forward ? edge.T_from_to : edge.T_from_to.inverse()) * onward;
+    }
+  }
+  sum.redundancy = sum.redundancy.cwiseMax(0.0);
+  return sum;
+}
+
+template OdometryComponent<Pose2> odometry_component(const PoseGraph<Pose2>&, const EdgeRoles&,
+                                                     const Pose2::Tangent&, double,
+                                                     const ReducedGraph<Pose2>&,
+                                                     const Estimate<Pose2>&,
+                                                     std::span<const Pose2::Matrix>);
+template OdometryComponent<Pose3> odometry_component(const PoseGraph<Pose3>&, const EdgeRoles&,
+                                                     const Pose3::Tangent&, double,
+                                                     const ReducedGraph<Pose3>&,
+                                                     const Estimate<Pose3>&,
+                                                     std::span<const Pose3::Matrix>);
+
+}  // namespace isotherm::slam::detail

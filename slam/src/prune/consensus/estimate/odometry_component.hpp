@@ -1,0 +1,30 @@
+#pragma once
+
+#include <span>
+
+#include "prune/consensus/estimate/estimate.hpp"
+
+namespace isotherm::slam::detail {
+
+/// Odometry as a variance component, by coordinate of its edges (Helmert). Where s_d is the factor
+/// on a coordinate's variances, the derivative of the log evidence by log s_d is half of `cost`, in
+/// units of the present covariances, less `redundancy`.
+template <class Pose>
+struct OdometryComponent {
+  typename Pose::Tangent cost = Pose::Tangent::Zero();        ///< in units of `scale`
+  typename Pose::Tangent redundancy = Pose::Tangent::Zero();  ///< numbers left over
+};
+
+/// Of `graph` as reduced with the factors `shape` on its variances, at the last update of
+/// `estimate`, where the factor on all of them was `scale`. Many edges are contracted into a step,
+/// and an early one's error in heading is one in place at the step's end: each edge has the part of
+/// the step's error that its own covariance explains. `covariances` are those of the steps' ends
+/// (Estimate::relative_covariances). O(edges).
+template <class Pose>
+OdometryComponent<Pose> odometry_component(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                                           const typename Pose::Tangent& shape, double scale,
+                                           const ReducedGraph<Pose>& reduced,
+                                           const Estimate<Pose>& estimate,
+                                           std::span<const typename Pose::Matrix> covariances);
+
+}  // namespace isotherm::slam::detail
