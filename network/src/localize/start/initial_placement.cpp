@@ -10,7 +10,6 @@
 #include "localize/firm/firmness.hpp"
 #include "localize/fold/open_folds.hpp"
 #include "localize/grow/grow.hpp"
-#include "localize/grow/grown_parts.hpp"
 #include "localize/patches/stitch.hpp"
 #include "localize/problem/patch.hpp"
 #include "localize/refine/robust_refine.hpp"
@@ -71,10 +70,6 @@ class Start {
     auto map = place_nodes(problem_, parts.front().nodes, parts.front().positions);
     unfold(free_, trusted_, evidence_.absence, errors(), gate_, options_, map);
     return {std::move(map)};
-  }
-
-  std::vector<Placement> grown() const {
-    return grown_parts(free_, trusted_, gate_, evidence_, options_);
   }
 
   // Parts in the frame of the anchors; without anchors, the largest only.
@@ -236,7 +231,6 @@ Placement place_initially(const RangeProblem& problem, const Placement& anchors,
   auto best = start.finished(std::move(stitched));
   if (!start.is_good(best)) best = start.better(std::move(best), start.stitched_and_unfolded());
   if (!start.is_good(best)) best = start.better(std::move(best), start.by_paths());
-  if (!start.is_firm(best, kFair)) best = start.better(std::move(best), start.grown());
   if (!start.is_firm(best, kFair)) best = start.repair(std::move(best));
   return std::move(start.drawn_together(std::move(best)).all);
 }
