@@ -67,12 +67,17 @@ TEST(Grow, FromACliqueReachesAllNodes) {
   EXPECT_LT((aligned - truth).colwise().norm().maxCoeff(), 0.2 * simulated.radius);
 }
 
-TEST(Grow, PlacesNothingAroundNothing) {
+TEST(Grow, StopsAtTheLimitAndWhereNothingIsPlaced) {
   const auto simulated = simulate_network({.nodes = 80, .anchors = 0, .degree = 20.0, .seed = 1});
   const auto problem = make_problem(simulated.network);
+  const auto trusted = all_of(problem);
   auto none = place_nodes(problem, {}, Eigen::MatrixXd(2, 0));
-  grow(problem, all_of(problem), kGate, kNoEvidence, {}, none);
+  grow(problem, trusted, kGate, kNoEvidence, {}, none);
   EXPECT_EQ(placed_count(none), 0);
+  const auto seeds = consistent_cliques(problem, trusted, kGate, {});
+  auto map = place_nodes(problem, seeds.front().members, seeds.front().positions);
+  grow(problem, trusted, kGate, kNoEvidence, {}, map, placed_count(map));
+  EXPECT_EQ(placed_count(map), static_cast<Index>(seeds.front().members.size()));
 }
 
 TEST(Agreement, CountsWhatThePairsExplainBeyondTheCoordinates) {

@@ -1,7 +1,6 @@
 #include "localize/problem/patch.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "isotherm/base/parallel.hpp"
@@ -109,24 +108,6 @@ std::vector<Patch> make_patches(const RangeProblem& problem, const std::vector<b
                  if (patch.find(centre) >= 0) patches[index] = std::move(patch);
                });
   return patches;
-}
-
-std::vector<bool> borne_out(const RangeProblem& problem, const std::vector<bool>& trusted,
-                            const std::vector<Patch>& patches) {
-  std::vector<bool> result(problem.pairs.size(), false);
-  for (const auto& patch : patches) {
-    for (std::size_t a = 0; a < patch.members.size(); ++a) {
-      for (const auto& [vertex, edge] : problem.pair_graph.neighbours(patch.members[a])) {
-        const int b = vertex > patch.members[a] && trusted[edge] ? patch.find(vertex) : -1;
-        if (b < 0) continue;
-        const auto& pair = problem.pairs[edge];
-        const double length =
-            (patch.positions.col(static_cast<Eigen::Index>(a)) - patch.positions.col(b)).norm();
-        if (std::abs(length - pair.distance) <= kWidth * pair.sigma) result[edge] = true;
-      }
-    }
-  }
-  return result;
 }
 
 }  // namespace isotherm::network::detail

@@ -30,9 +30,4 @@ std::vector<SmallRange> inner_ranges(const RangeProblem& problem, const std::vec
 std::vector<Patch> make_patches(const RangeProblem& problem, const std::vector<bool>& trusted,
                                 const LocalizeOptions& options);
 
-/// Of all pairs, those that a patch with both ends bears out: a false one hardly has its ends in
-/// one patch, and if so it seldom fits.
-std::vector<bool> borne_out(const RangeProblem& problem, const std::vector<bool>& trusted,
-                            const std::vector<Patch>& patches);
-
 }  // namespace isotherm::network::detail

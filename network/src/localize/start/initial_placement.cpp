@@ -10,6 +10,8 @@
 #include "localize/firm/firmness.hpp"
 #include "localize/fold/open_folds.hpp"
 #include "localize/grow/grow.hpp"
+#include "localize/grow/grown_parts.hpp"
+#include "localize/patches/stitch.hpp"
 #include "localize/problem/patch.hpp"
 #include "localize/refine/robust_refine.hpp"
 #include "localize/start/anchor_frame.hpp"
@@ -18,7 +20,13 @@
 namespace isotherm::network::detail {
 namespace {
 
-// How maps are started, brought into their frame and mended.
+constexpr double kFair = 0.5;   // of the nodes, that are firm in a map which is right as a whole
+constexpr Index kBody = 500;    // and firm nodes that are no accident, however large the rest
+constexpr double kGood = 0.95;  // and in one that needs no rival, if these trusted pairs fit:
+constexpr double kFitting = 0.9;
+constexpr double kWhole = 0.995;  // and in one that has no tear
+
+// How maps are started, and brought together.
 class Start {
  public:
   Start(const RangeProblem& problem, const Placement& anchors, const std::vector<bool>& trusted,
@@ -34,26 +42,6 @@ class Start {
     evidence_ = learn_evidence(free_, trusted_, gate_, patches_);
   }
 
-  // By the pairs that local maps bear out: false ones are short cuts.
-  Placement by_local_pairs() const { return by_paths(borne_out(free_, trusted_, patches_)); }
-
-  // Of that map, one by all pairs, and the better one with all its nodes loose, which draws
-  // together what lies torn apart, the one that explains most.
-  Placement best_map() const {
-    auto best = mended(by_local_pairs());
-    if (!is_good(best)) challenge(best, by_paths(trusted_));
-    if (!is_good(best)) challenge(best, unfolded(best.all));
-    return std::move(best.all);
-  }
-
- private:
-  // A placement with those of its nodes that are firm, and how well these fit.
-  struct Candidate {
-    Placement all;
-    Placement firm;
-    double credit = 0.0;
-  };
-
   // On which side ranges err, as far as the local maps tell.
   Errors errors() const {
     constexpr double kClear = 3.0;  // a fifth of the others, in chi-squared
@@ -61,13 +49,32 @@ class Start {
     return limits.apart > limits.close + kClear ? Errors::too_long : Errors::any;
   }
 
-  Placement by_paths(const std::vector<bool>& pairs) const {
-    return together(maps_by_paths(free_, pairs, evidence_.absence, errors(), gate_, options_));
+  // Shortest paths, in one go.
+  std::vector<Placement> by_paths() const {
+    return {map_by_paths(free_, trusted_, evidence_.absence, errors(), gate_, options_)};
   }
 
-  Placement unfolded(Placement map) const {
-    unfold(problem_, trusted_, evidence_.absence, errors(), gate_, options_, map);
-    return map;
+  std::vector<Placement> stitched() const {
+    std::vector<Placement> parts;
+    for (const auto& part : stitch(free_, patches_)) {
+      parts.push_back(place_nodes(problem_, part.nodes, part.positions));
+      if (options_.method != LocalizeMethod::robust) continue;
+      refine_robustly(free_, trusted_, gate_, options_, parts.back());
+    }
+    return parts;
+  }
+
+  // The largest part, with its folds opened.
+  std::vector<Placement> stitched_and_unfolded() const {
+    const auto parts = stitch(free_, patches_);
+    if (parts.empty()) return {};
+    auto map = place_nodes(problem_, parts.front().nodes, parts.front().positions);
+    unfold(free_, trusted_, evidence_.absence, errors(), gate_, options_, map);
+    return {std::move(map)};
+  }
+
+  std::vector<Placement> grown() const {
+    return grown_parts(free_, trusted_, gate_, evidence_, options_);
   }
 
   // Parts in the frame of the anchors; without anchors, the largest only.
@@ -85,49 +92,107 @@ class Start {
     return all;
   }
 
-  // Whether so many nodes are firm that there is little to gain.
-  bool is_good(const Candidate& candidate) const {
-    constexpr double kGood = 0.95;
-    return placed_count(candidate.firm) >= kGood * problem_.nodes;
+  // Nodes outside the parts, from those that have a place.
+  void complete(Placement& placement) const {
+    if (placed_count(placement) == 0) return;
+    grow(problem_, trusted_, gate_, evidence_, options_, placement);
+    place_more(problem_, gate_, evidence_, placement);
+    refine_robustly(problem_, trusted_, gate_, options_, placement);
   }
 
-  // With the nodes outside the map, placed from those that have a place.
-  Candidate completed(Placement map) const {
-    if (placed_count(map) > 0) {
-      grow(problem_, trusted_, gate_, evidence_, options_, map);
-      place_more(problem_, gate_, evidence_, map);
-      refine_robustly(problem_, trusted_, gate_, options_, map);
-    }
+  // A placement with those of its nodes that are firm, and how well these fit.
+  struct Candidate {
+    Placement all;
+    Placement firm;
+    double credit = 0.0;
+  };
+
+  bool is_firm(const Candidate& candidate, double part) const {
+    return placed_count(candidate.firm) >= part * problem_.nodes;
+  }
+
+  // Whether it needs no rival. Of a map that many trusted pairs contradict there may be a better
+  // one, however firm it is.
+  bool is_good(const Candidate& candidate) const {
+    const auto found = agreement(problem_, trusted_, gate_, candidate.all);
+    return is_firm(candidate, kGood) &&
+           static_cast<double>(found.fitting) >= kFitting * static_cast<double>(found.pairs);
+  }
+
+  Candidate candidate(Placement placement) const {
+    complete(placement);
     Candidate result;
-    result.all = std::move(map);
+    result.all = std::move(placement);
     examine(result);
-    if (open_folds(problem_, trusted_, gate_, options_, result.all) > 0) examine(result);
     return result;
   }
 
-  // Places anew what is not firm, as long as more is explained.
-  Candidate mended(Placement map) const {
+  // Without the folds that can be opened; in a map that is wrong almost everywhere there are too
+  // many.
+  Candidate opened(Candidate candidate) const {
+    if (is_firm(candidate, kFair) &&
+        open_folds(problem_, trusted_, gate_, options_, candidate.all) > 0) {
+      examine(candidate);
+    }
+    return candidate;
+  }
+
+  // Places anew what is not firm, as long as more becomes so, until most is.
+  Candidate repair(Candidate best) const {
     constexpr int kMostRounds = 4;
-    auto best = completed(std::move(map));
-    for (int round = 0; round < kMostRounds && !is_good(best); ++round) {
-      auto again = completed(best.firm);
+    for (int round = 0; round < kMostRounds && !is_firm(best, kGood); ++round) {
+      auto again = candidate(best.firm);
       if (again.credit <= best.credit) break;
-      best = std::move(again);
+      best = opened(std::move(again));
     }
     return best;
   }
 
-  // Takes what comes of a map if that explains more.
-  void challenge(Candidate& best, Placement map) const {
-    auto rival = mended(std::move(map));
-    if (rival.credit > best.credit) best = std::move(rival);
+  // From a placement of some nodes. Where most of them are wrong, and no large part is right,
+  // there is nothing to mend.
+  Candidate finished(Placement placement) const {
+    auto result = opened(candidate(std::move(placement)));
+    const bool has_body = is_firm(result, kFair) || placed_count(result.firm) >= kBody;
+    return has_body ? repair(std::move(result)) : result;
+  }
+
+  // A large part that hangs on few nodes may have turned, and what lay between it and the rest lost
+  // its place: springs of wide loss draw such a tear together.
+  Candidate drawn_together(Candidate best) const {
+    constexpr double kTear = 0.5;  // of what a range that fits is worth, at least
+    if (is_firm(best, kWhole)) return best;
+    auto map = best.all;
+    unfold(problem_, trusted_, evidence_.absence, errors(), gate_, options_, map);
+    refine_robustly(problem_, trusted_, gate_, options_, map);
+    if (credit(map) < credit(best.all) + kTear * gate_) return best;
+    return challenged(std::move(best), std::move(map));
+  }
+
+  // Of a candidate and the one that some parts make, that of which more is explained. Parts that
+  // explain much less than a fair candidate does are not worth completing.
+  Candidate better(Candidate best, std::vector<Placement> parts) const {
+    constexpr double kWorth = 0.5;
+    auto map = together(std::move(parts));
+    if (is_firm(best, kFair) && credit(map) < kWorth * credit(best.all)) return best;
+    return challenged(std::move(best), std::move(map));
+  }
+
+ private:
+  // Of a candidate and the one that a map makes, that of which more is explained.
+  Candidate challenged(Candidate best, Placement map) const {
+    auto rival = finished(std::move(map));
+    return rival.credit > best.credit ? std::move(rival) : std::move(best);
   }
 
   void examine(Candidate& candidate) const {
     candidate.firm = candidate.all;
     candidate.firm.placed = firm_nodes(problem_, trusted_, gate_, options_, candidate.all);
-    candidate.credit = agreement(problem_, trusted_, gate_, candidate.firm).credit -
-                       absence_cost(problem_, evidence_.absence, candidate.firm);
+    candidate.credit =
+        credit(candidate.firm) - absence_cost(problem_, evidence_.absence, candidate.firm);
+  }
+
+  double credit(const Placement& placement) const {
+    return agreement(problem_, trusted_, gate_, placement).credit;
   }
 
   const RangeProblem& problem_;
@@ -163,10 +228,17 @@ Placement place_initially(const RangeProblem& problem, const Placement& anchors,
                           const std::vector<bool>& trusted, double gate,
                           const LocalizeOptions& options) {
   const Start start(problem, anchors, trusted, gate, options);
-  if (options.method == LocalizeMethod::robust) return start.best_map();
-  auto map = start.by_local_pairs();
-  place_more(problem, gate, {{}, {gate, gate}}, map);
-  return map;
+  auto stitched = start.together(start.stitched());
+  if (options.method != LocalizeMethod::robust) {
+    place_more(problem, gate, {{}, {gate, gate}}, stitched);
+    return stitched;
+  }
+  auto best = start.finished(std::move(stitched));
+  if (!start.is_good(best)) best = start.better(std::move(best), start.stitched_and_unfolded());
+  if (!start.is_good(best)) best = start.better(std::move(best), start.by_paths());
+  if (!start.is_firm(best, kFair)) best = start.better(std::move(best), start.grown());
+  if (!start.is_firm(best, kFair)) best = start.repair(std::move(best));
+  return std::move(start.drawn_together(std::move(best)).all);
 }
 
 }  // namespace isotherm::network::detail

@@ -10,13 +10,13 @@ namespace isotherm::network::detail {
 /// Pairs that the heat kernel does not suspect (all, if that test is off).
 std::vector<bool> trusted_pairs(const RangeProblem& problem, const LocalizeOptions& options);
 
-/// A first place for as many nodes as possible. A map by shortest paths over the pairs that
-/// local maps bear out is brought, part by part, into the frame of at least d + 1 anchors that fix
-/// it (without anchors only the largest is placed), completed by growing and refined; parts
-/// whose mirror image fits better are mirrored, and what is not firm is placed anew from what is,
-/// as long as that helps. If too few nodes are firm then, a map by all trusted pairs, and the
-/// better of both unfolded once more, are mended alike; the one whose firm nodes explain most
-/// is taken. Plain least squares has the first start, unmended.
+/// A first place for as many nodes as possible. Patches of trusted pairs are stitched,
+/// each part is refined on its own, brought into the frame of at least d + 1 anchors that
+/// fix it (without anchors only the largest is placed) and grown. If too few nodes are firm
+/// then, maps by shortest paths, stitched patches unfolded and, if there is no fair one, maps
+/// grown from cliques are tried too; the start whose firm nodes explain more is taken, and what
+/// is not firm is placed anew from what is, as long as that helps. Plain least squares has the
+/// stitched start as it is.
 Placement place_initially(const RangeProblem& problem, const Placement& anchors,
                           const std::vector<bool>& trusted, double gate,
                           const LocalizeOptions& options);

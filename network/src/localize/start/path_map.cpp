@@ -37,21 +37,22 @@ Eigen::VectorXd path_lengths(const RangeProblem& problem, const std::vector<bool
   return length;
 }
 
-// The nodes of each part that pairs connect, ascending; the largest first, lone nodes left out.
-std::vector<std::vector<Index>> parts_of(const RangeProblem& problem,
-                                         const std::vector<bool>& trusted) {
+// The nodes of the largest part, ascending.
+std::vector<Index> largest_part(const RangeProblem& problem, const std::vector<bool>& trusted) {
   std::vector<spectral::WeightedEdge> edges;
   for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
     if (trusted[p]) edges.push_back({problem.pairs[p].from, problem.pairs[p].to, 1.0});
   }
   const auto components =
       spectral::connected_components(spectral::WeightedGraph(problem.nodes, edges));
-  std::vector<std::vector<Index>> parts(components.count);
-  for (Index v = 0; v < problem.nodes; ++v) parts[components.label[v]].push_back(v);
-  std::erase_if(parts, [](const auto& part) { return part.size() < 2; });
-  std::stable_sort(parts.begin(), parts.end(),
-                   [](const auto& a, const auto& b) { return a.size() > b.size(); });
-  return parts;
+  std::vector<Index> size(components.count, 0);
+  for (const auto label : components.label) ++size[label];
+  const auto largest = std::max_element(size.begin(), size.end()) - size.begin();
+  std::vector<Index> nodes;
+  for (Index v = 0; v < problem.nodes; ++v) {
+    if (components.label[v] == largest) nodes.push_back(v);
+  }
+  return nodes;
 }
 
 // Squared path lengths from pilots, each the node farthest from those before, to the nodes.
@@ -183,17 +184,18 @@ class Unfolding {
 
 }  // namespace
 
-std::vector<Placement> maps_by_paths(const RangeProblem& problem, const std::vector<bool>& trusted,
-                                     const Absence& absence, Errors errors, double gate,
-                                     const LocalizeOptions& options) {
-  std::vector<Placement> maps;
-  for (const auto& part : parts_of(problem, trusted)) {
-    const auto pilots = choose_pilots(problem, trusted, part);
-    maps.push_back(place_nodes(problem, part, scale(pilots, problem.dimension)));
-    match_size(problem, trusted, maps.back());
-    unfold(problem, trusted, absence, errors, gate, options, maps.back());
+Placement map_by_paths(const RangeProblem& problem, const std::vector<bool>& trusted,
+                       const Absence& absence, Errors errors, double gate,
+                       const LocalizeOptions& options) {
+  const auto nodes = largest_part(problem, trusted);
+  if (static_cast<int>(nodes.size()) <= problem.dimension + 1) {
+    return place_nodes(problem, {}, Eigen::MatrixXd(problem.dimension, 0));
   }
-  return maps;
+  auto placement =
+      place_nodes(problem, nodes, scale(choose_pilots(problem, trusted, nodes), problem.dimension));
+  match_size(problem, trusted, placement);
+  unfold(problem, trusted, absence, errors, gate, options, placement);
+  return placement;
 }
 
 void unfold(const RangeProblem& problem, const std::vector<bool>& trusted, const Absence& absence,

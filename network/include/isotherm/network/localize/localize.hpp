@@ -131,14 +131,14 @@ struct LocalizeResult {
 
 /// Positions, covariances, and a verdict on every range.
 ///
-/// Heat-kernel pruning, first maps (shortest paths over the pairs that local maps bear out,
-/// unfolded by springs), robust refinement, then the maximum of the joint density of all ranges,
-/// each of which may be correct, too long or anything: docs/concepts/localization.md. Where most
-/// nodes near each other have a range, places beside nodes without one count as less likely.
-/// Landmarks of the network with a position are the anchors; they do not move. Without anchors the
-/// largest part is placed in a frame of its own, and covariances are those of the shape (minimal
-/// trace). With anchors in too small a number, or on one line (plane), nodes whose mirror image
-/// fits as well get that status and no position.
+/// Heat-kernel pruning, first maps (patches stitched by rotation synchronisation, shortest paths
+/// unfolded by springs, or cliques grown), robust refinement, then the maximum of the joint density
+/// of all ranges, each of which may be correct, too long or anything:
+/// docs/concepts/localization.md. Where most nodes near each other have a range, places beside
+/// nodes without one count as less likely. Landmarks of the network with a position are the
+/// anchors; they do not move. Without anchors the largest part is placed in a frame of its own, and
+/// covariances are those of the shape (minimal trace). With anchors in too small a number, or on
+/// one line (plane), nodes whose mirror image fits as well get that status and no position.
 /// Memory O(nodes + ranges) apart from the fill of a sparse factorisation.
 /// @throws InvalidArgument for options out of range, or a network with a range that
 ///   is negative, not finite, from a node to itself or to one that does not exist;
