@@ -532,8 +532,8 @@ Written by `benchmarks/networks.py`:
 measured piece by piece (`--sizes`, `--budget`) in builds of the preset `release`, on two cores
 that had other work to do: seconds are wall-clock and say little. RMSD counts the nodes that
 a method places, anchors left out, in sides of the unit square. Sizes, rows and cells that are
-missing were not measured. The networks of 100 and 1,000 nodes, and the real ranges, are of one
-build. *Least squares* and *MDS-MAP* are medians measured before, of two or three networks each. Those
+missing were not measured. The networks of 100 and 1,000 nodes are of a
+build that joined firm sets later: of 18 networks one had other positions, and was measured anew. *Least squares* and *MDS-MAP* are medians measured before, of two or three networks each. Those
 of 10,000 nodes are all older: of a build that judged ranges by chi-squared gates, not by kinds.
 
 ## Simulated networks
@@ -554,9 +554,8 @@ missing, absence proves less, while a range that is too long is still a range.
 BEYOND = """With a fifth of the ranges biased, or more, and 12 ranges a node, what is left of correct ones
 does not fix every part of a network of 1,000 nodes: noise bends what lies between parts that hang on
 few ranges until it fits, and a part may be shifted or turned. In networks of 100 nodes it is mostly
-single nodes at the border, whose few ranges agree in a wrong place. Three networks of 100 nodes with
-seed 3 and false ranges end with a part in a wrong place that is called localised, one of them with 17
-nodes: why is not known. Precision falls a little where ranges can be too long, most with 10 % of
+single nodes at the border, whose few ranges agree in a wrong place. Two networks of 100 nodes with
+seed 3, 10 % of noise and a tenth of the ranges wrong end with five nodes in a wrong place. Precision falls a little where ranges can be too long, most with 10 % of
 noise: an excess below the noise is taken for one now and then.
 
 Of 10,000 nodes, with none, 10 or 20 % false ranges, those far off are no outliers: they lie at the

@@ -12,6 +12,7 @@
 #include "localize/evidence/evidence.hpp"
 #include "localize/evidence/multilateration.hpp"
 #include "localize/evidence/star.hpp"
+#include "localize/firm/found_bodies.hpp"
 #include "localize/firm/hinge_parts.hpp"
 #include "localize/fold/fold_axes.hpp"
 #include "localize/fold/fold_trial.hpp"
@@ -252,6 +253,13 @@ class Firmness {
     return {place, place, 0.0, sigma_, {limit, limit}};
   }
 
+  // Whether two bodies that have these nodes in common are one.
+  bool fix_body(const Nodes& common) const {
+    TiedBody body;
+    for (const Index v : common) body.ties.push_back(shared(v));
+    return holds(body, {});
+  }
+
   bool holds(const TiedBody& body, const PointsCost& points_cost) const {
     const int d = problem_.dimension;
     int held = 0;  // coordinates, as far as ranges agree
@@ -265,18 +273,16 @@ class Firmness {
     return !has_mirror_image(body, cost + clear_, points_cost);
   }
 
-  // What can be reached from each clique that is not yet part of it, the largest first.
+  // What can be reached from each clique, the largest first.
   std::vector<Nodes> find_bodies() const {
-    std::vector<Nodes> bodies;
-    std::vector<bool> covered(problem_.nodes, false);
+    FoundBodies found(problem_.nodes);
     for (const auto& seed : consistent_cliques(problem_, agreeing_pairs(), gate_, options_)) {
-      const bool known = std::all_of(seed.members.begin(), seed.members.end(),
-                                     [&](Index v) { return covered[v]; });
-      if (known) continue;
+      if (found.cover(seed.members)) continue;
       auto firm = with(seed.members);
-      bodies.push_back(spread(firm, seed.members, strict_, {}));
-      for (const Index v : bodies.back()) covered[v] = true;
+      found.begin_body();
+      found.end_body(spread(firm, seed.members, strict_, {}, &found));
     }
+    auto bodies = std::move(found).take();
     std::stable_sort(bodies.begin(), bodies.end(),
                      [](const Nodes& a, const Nodes& b) { return a.size() > b.size(); });
     return bodies;
@@ -293,13 +299,22 @@ class Firmness {
   }
 
   // Adds the nodes that are firm thanks to those in `firm`, of which `fresh` are new, and
-  // so on; not those that are `bound`. All of them.
-  Nodes spread(Placement& firm, Nodes fresh, const Limits& limits,
-               const std::vector<bool>& bound) const {
+  // so on; not those that are `bound`. Bodies `found` before come as a whole with nodes that fix
+  // them. All of them.
+  Nodes spread(Placement& firm, Nodes fresh, const Limits& limits, const std::vector<bool>& bound,
+               FoundBodies* found = nullptr) const {
     Nodes all;
     while (!fresh.empty()) {
       for (const Index v : fresh) firm.placed[v] = true;
       all.insert(all.end(), fresh.begin(), fresh.end());
+      if (found != nullptr) {
+        const auto joined =
+            found->join(fresh, firm.placed, [&](const Nodes& shared) { return fix_body(shared); });
+        // Whoever has new neighbours among those that joined has others among the rest.
+        const auto& fewer = joined.size() < all.size() ? joined : all;
+        if (!joined.empty()) fresh.insert(fresh.end(), fewer.begin(), fewer.end());
+        all.insert(all.end(), joined.begin(), joined.end());
+      }
       fresh = made_firm(firm, fresh, limits, bound);
     }
     return all;
