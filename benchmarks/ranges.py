@@ -148,12 +148,12 @@ class LibRSF:
         for name in sorted(self.beacons):
             lines.append(f"VERTEX_XY {name} {self.truth[name][0]!r} {self.truth[name][1]!r}")
         for k in range(1, len(rows)):
-            time, right, left, _, track, *variance = rows[k]
+            time, first, second, _, arm, *variance = rows[k]
             passed = time - rows[k - 1][0]
-            length, turn = 0.5 * passed * (right + left), passed * (right - left) / track
+            length, turn = 0.5 * passed * (first + second), 0.5 * passed * (second - first) / arm
             x, y = length * math.cos(0.5 * turn), length * math.sin(0.5 * turn)
             xx = 0.25 * passed ** 2 * (variance[0] + variance[1])
-            yy, tt = passed ** 2 * variance[2], passed ** 2 * (variance[0] + variance[1]) / track ** 2
+            yy, tt = passed ** 2 * variance[2], 0.25 * passed ** 2 * (variance[0] + variance[1]) / arm ** 2
             lines.append(f"EDGE_SE2 {time!r} X{k - 1} X{k} {x!r} {y!r} {turn!r} {xx!r} 0 0 {yy!r} 0 {tt!r}")
         pose_at = {row[0]: k for k, row in enumerate(rows)}
         for k in self.ranges:

@@ -17,6 +17,7 @@
 #include "isotherm/network/io/range_rows.hpp"
 #include "isotherm/network/localize/anchor_conflicts.hpp"
 #include "isotherm/network/localize/localize.hpp"
+#include "isotherm/network/localize/range_mixture.hpp"
 #include "isotherm/network/range_network.hpp"
 #include "isotherm/network/simulate/simulate_network.hpp"
 #include "isotherm/spectral/edges/verdict_file.hpp"

@@ -14,6 +14,7 @@
 #include "localize/refine/determinacy.hpp"
 #include "localize/refine/range_information.hpp"
 #include "localize/refine/robust_refine.hpp"
+#include "localize/refine/weigh_ranges.hpp"
 #include "localize/start/initial_placement.hpp"
 
 namespace isotherm::network {
@@ -24,6 +25,8 @@ using detail::RangeCheck;
 using detail::RangeProblem;
 using spectral::EdgeVerdict;
 using spectral::Verdict;
+
+constexpr double kLikelier = 0.5;  // than not
 
 class Localization {
  public:
@@ -39,8 +42,8 @@ class Localization {
     placement_ = detail::place_initially(problem_, anchors_, trusted_, gate_, options_);
     if (options_.method == LocalizeMethod::robust) {
       use_ = detail::ranges_within(problem_, placement_, gate_);
-      // Where the noise is not known what is firm depends on it.
-      if (!noise_is_given()) decide();
+      decide();
+      whole_ = judged_;
       leave_out_undetermined();
     } else {
       use_ = between_placed();
@@ -68,56 +71,35 @@ class Localization {
     converged_ = outcome.converged;
   }
 
-  // Least squares on the kept ranges and leave-one-out tests of all, in turn until
-  // the kept ranges stay the same.
+  // Places by what all ranges are, and by turns how accurate these are.
   void decide() {
     constexpr int kMostRounds = 10;
-    std::vector<bool> returned(use_.size(), false);
     for (int round = 0; round < kMostRounds; ++round) {
       ++result_.rounds;
-      fit();
-      checks_ = detail::RangeInformation(problem_, use_, placement_).check_ranges();
-      const bool noise_changed = update_noise();
-      bool changed = false;
-      for (std::size_t k = 0; k < use_.size(); ++k) {
-        const bool keep = checks_[k].checked && (keeps_untested(k) || fits(k));
-        // Late rounds only remove, so that they end, and a range comes back once: some fit only
-        // as long as they are left out.
-        if (keep == use_[k] || (keep && (returned[k] || round > kMostRounds / 2))) continue;
-        use_[k] = keep;
-        returned[k] = returned[k] || keep;
-        changed = true;
-      }
-      if (!changed && !noise_changed) return;
+      weighed_ = round == 0 ? detail::weigh_ranges(problem_, options_, placement_)
+                            : detail::weigh_ranges_again(problem_, options_, weighed_, placement_);
+      judge_placed();
+      if (!update_noise()) return;
     }
   }
 
-  bool noise_is_given() const {
-    const auto& given = problem_.sigma_given;
-    return std::find(given.begin(), given.end(), false) == given.end();
+  void judge_placed() {
+    judged_ = detail::judge_ranges(problem_, weighed_, placement_);
+    result_.iterations += weighed_.outcome.iterations;
+    converged_ = weighed_.outcome.converged;
+    for (std::size_t k = 0; k < use_.size(); ++k) use_[k] = is_correct(k);
   }
 
-  // A range that was left out has to be likely where it is predicted, not only possible: of
-  // a node that hardly anything else holds any length would be.
-  bool fits(std::size_t k) const {
-    const auto& check = checks_[k];
-    if (use_[k]) return check.chi2 <= gate_;
-    return check.chi2 - std::log(check.redundancy) <= gate_ && is_predicted(k);
+  // Likelier than not, given all others.
+  bool is_correct(std::size_t k) const {
+    return judged_[k].checked ? judged_[k].loss.probability[kCorrect] >= kLikelier
+                              : weighed_.weighs[k];
   }
 
-  // Whether the other ranges say how long one is, as far as that can be said with derivatives:
-  // a node that may be elsewhere altogether is pulled there by the wrong range.
-  bool is_predicted(std::size_t k) const {
-    constexpr double kOfLength = 0.25;
-    const double deviation = problem_.sigmas[k] * std::sqrt(1.0 / checks_[k].redundancy - 1.0);
-    return deviation <= kOfLength * problem_.ranges[k].distance;
-  }
-
-  bool keeps_untested(std::size_t k) const { return use_[k] && !checks_[k].is_tested(); }
-
-  // Scales the standard deviations so that the median deviation of the kept ranges
-  // is that of normal noise. True if that changed much.
+  // Scales the standard deviations to those that the errors most likely have. True if that changed
+  // much.
   bool update_noise() {
+    constexpr double kMuch = 0.05;  // of its log
     bool changed = false;
     for (const bool given : {true, false}) {
       if (given && !options_.estimate_noise) continue;
@@ -131,31 +113,27 @@ class Localization {
         if (!scaled[pair]) problem_.pairs[pair].sigma *= factor;
         scaled[pair] = true;
       }
-      for (std::size_t k = 0; k < checks_.size(); ++k) {
-        if (problem_.sigma_given[k] == given) checks_[k].chi2 /= factor * factor;
-      }
-      changed = changed || std::abs(std::log(factor)) > 0.05;
+      changed = changed || std::abs(std::log(factor)) > kMuch;
     }
     problem_.typical_sigma = detail::lower_median(problem_.sigmas);
     return changed;
   }
 
   double noise_factor(bool given) const {
-    constexpr double kMedianOfNormal = 0.6745;
-    std::vector<double> deviations;
+    RangeStatistics statistics;
+    double fitted = 0.0;
     double largest = 0.0;
-    for (std::size_t k = 0; k < checks_.size(); ++k) {
+    for (std::size_t k = 0; k < judged_.size(); ++k) {
       if (problem_.sigma_given[k] != given) continue;
       largest = std::max(largest, problem_.sigmas[k]);
-      if (use_[k] && checks_[k].is_tested()) {
-        deviations.push_back(std::abs(checks_[k].deviation));
-      }
+      statistics.add(judged_[k].moments);
+      fitted += judged_[k].fitted;
     }
+    const auto& count = statistics.count;
     // A given one is corrected only on better evidence than one that has to be found.
-    const std::size_t enough = given ? 10 : 3;
-    if (deviations.size() < enough) return 1.0;
-    const double factor = detail::lower_median(std::move(deviations)) / kMedianOfNormal;
-    return std::max(factor, finest_noise(given) / largest);
+    const double enough = given ? 10.0 : 1.0;
+    if (count[kCorrect] + count[kTooLong] - fitted < enough) return 1.0;
+    return std::max(most_likely_scale(statistics, fitted, 1.0), finest_noise(given) / largest);
   }
 
   // Least standard deviation that ranges can be found to have: exact ones in arithmetic that is
@@ -205,27 +183,44 @@ class Localization {
   }
 
   void judge() {
-    checks_ = detail::RangeInformation(problem_, use_, placement_).check_ranges();
     const bool robust = options_.method == LocalizeMethod::robust;
+    if (!robust) checks_ = detail::RangeInformation(problem_, use_, placement_).check_ranges();
     for (std::size_t k = 0; k < problem_.ranges.size(); ++k) {
       EdgeVerdict verdict;
       verdict.edge = static_cast<std::int64_t>(k);
       verdict.from = static_cast<std::uint64_t>(problem_.ranges[k].from);
       verdict.to = static_cast<std::uint64_t>(problem_.ranges[k].to);
-      verdict.score = checks_[k].chi2;
-      verdict.threshold = robust ? gate_ : std::numeric_limits<double>::infinity();
-      if (!checks_[k].checked) {
-        verdict.verdict = trusted_[problem_.pair_of[k]] ? Verdict::ambiguous : Verdict::prune;
-        verdict.stage = trusted_[problem_.pair_of[k]] ? "no position" : "heat";
-      } else if (!checks_[k].is_tested()) {
+      const auto& range = problem_.ranges[k];
+      if (!placement_.placed[range.from] || !placement_.placed[range.to]) {
+        const bool trusted = trusted_[problem_.pair_of[k]];
+        verdict.verdict = trusted ? Verdict::ambiguous : Verdict::prune;
+        verdict.stage = trusted ? "no position" : "heat";
+        if (robust && whole_[k].checked) judge_by_kind(whole_[k], Verdict::ambiguous, verdict);
+      } else if (robust ? !judged_[k].checked : !checks_[k].is_tested()) {
         verdict.verdict = Verdict::ambiguous;
         verdict.stage = "unchecked";
+      } else if (robust) {
+        judge_by_kind(judged_[k], Verdict::keep, verdict);
       } else {
-        verdict.verdict = use_[k] ? Verdict::keep : Verdict::prune;
-        verdict.stage = robust ? "leave-one-out" : "least-squares";
+        verdict.score = checks_[k].chi2;
+        verdict.threshold = std::numeric_limits<double>::infinity();
+        verdict.stage = "least-squares";
       }
       result_.verdicts.push_back(std::move(verdict));
     }
+  }
+
+  // The score is the log of the odds of being wrong. Where an end has another place that fits
+  // nearly as well, what the likeliest map contradicts is wrong, but what it does not may be so in
+  // another.
+  static void judge_by_kind(const detail::JudgedRange& range, Verdict if_correct,
+                            EdgeVerdict& verdict) {
+    const double correct = range.loss.probability[kCorrect];
+    verdict.probability = correct;
+    verdict.score = std::log((1.0 - correct) / correct);
+    verdict.threshold = 0.0;
+    verdict.verdict = correct < kLikelier ? Verdict::prune : if_correct;
+    verdict.stage = name_of(range.loss);
   }
 
   // Why nodes have no position, from the graph of the ranges no test speaks against.
@@ -246,7 +241,11 @@ class Localization {
   }
 
   LocalizeResult finish() {
-    result_.covariances = detail::RangeInformation(problem_, use_, placement_).covariances();
+    result_.covariances =
+        options_.method == LocalizeMethod::robust
+            ? detail::RangeInformation(problem_, weighed_.weighs, placement_, weighed_.information)
+                  .covariances()
+            : detail::RangeInformation(problem_, use_, placement_).covariances();
     result_.positions = placement_.positions;
     for (Index v = 0; v < problem_.nodes; ++v) {
       if (placement_.placed[v]) continue;
@@ -282,6 +281,9 @@ class Localization {
   std::vector<bool> trusted_;  // pairs
   std::vector<bool> use_;      // ranges
   std::vector<RangeCheck> checks_;
+  detail::WeighedRanges weighed_;
+  std::vector<detail::JudgedRange> judged_;
+  std::vector<detail::JudgedRange> whole_;  // in the map with all nodes
   std::vector<NodeStatus> statuses_;
   bool converged_ = true;
   LocalizeResult result_;

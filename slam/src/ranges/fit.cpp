@@ -16,7 +16,6 @@ constexpr double kFirstDamping = 1e-10;  // below the stiffness of any direction
 constexpr double kMostDamping = 1e12;
 constexpr double kNoGain = 1e-3;     // nats: what nobody can tell apart
 constexpr double kSameScale = 1e-2;  // of the log of a scale
-constexpr double kTold = 3.0;        // deviations: what noise hardly ever exceeds
 constexpr int kMostRounds = 40;
 
 template <class Pose>
@@ -75,8 +74,8 @@ class Fit {
     return false;
   }
 
-  RangeStatistics statistics() const {
-    RangeStatistics statistics;
+  network::RangeStatistics statistics() const {
+    network::RangeStatistics statistics;
     for (const auto& term : problem_.terms) {
       const double sigma = at_.model.sigma(term.sigma);
       statistics.add(range_moments(at_.model, range_error(term, at_), sigma * sigma));
@@ -88,10 +87,10 @@ class Fit {
   // that they are less accurate than believed shows before.
   void learn_ranges() {
     const auto found = statistics();
-    learn_kinds(found, problem_.typical_excess, problem_.too_long, at_.model);
-    // An excess that noise hides is noise.
-    at_.model.excess = std::max(at_.model.excess, kTold * at_.model.sigma(typical_sigma()));
-    at_.model.scale = std::max(at_.model.scale, most_likely_scale(found, 0.0, at_.model.scale));
+    learn_kinds(found, problem_.typical_excess, at_.model.sigma(typical_sigma()), problem_.too_long,
+                at_.model);
+    at_.model.scale =
+        std::max(at_.model.scale, network::most_likely_scale(found, 0.0, at_.model.scale));
   }
 
   // The excess to begin with is between it and the longest range.
@@ -113,10 +112,10 @@ class Fit {
     summary_.evidence = -equations.cost(at_) - 0.5 * *log_determinant;
     summary_.variances = equations.prediction_variances(at_);
     const double fitted = equations.fitted(summary_.variances);
-    const double odometry =
-        most_likely_variance(equations.steps_chi2(at_), equations.steps_redundancy(fitted));
-    const double before =
-        std::exchange(at_.model.scale, most_likely_scale(statistics(), fitted, at_.model.scale));
+    const double odometry = network::most_likely_variance(equations.steps_chi2(at_),
+                                                          equations.steps_redundancy(fitted));
+    const double before = std::exchange(
+        at_.model.scale, network::most_likely_scale(statistics(), fitted, at_.model.scale));
     const double change = std::log(std::exchange(at_.model.odometry, odometry) / odometry);
     return std::abs(change) <= kSameScale &&
            std::abs(std::log(before / at_.model.scale)) <= kSameScale;

@@ -66,8 +66,8 @@ class Location {
   }
 
   static void leave_out_bias(detail::RangeModel& model) {
-    model.share[detail::kCorrect] += model.share[detail::kTooLong];
-    model.share[detail::kTooLong] = 0.0;
+    model.share[network::kCorrect] += model.share[network::kTooLong];
+    model.share[network::kTooLong] = 0.0;
   }
 
   detail::GrownMap<Pose> grow(const Start& start) const {
@@ -247,9 +247,9 @@ class Location {
     RangeErrors errors;
     errors.scale = model.scale;
     errors.odometry = model.odometry;
-    errors.too_long = problem_.too_long ? model.share[detail::kTooLong] : 0.0;
+    errors.too_long = problem_.too_long ? model.share[network::kTooLong] : 0.0;
     errors.excess = problem_.too_long ? model.excess : 0.0;
-    errors.anything = model.share[detail::kAnything];
+    errors.anything = model.share[network::kAnything];
     errors.calibrated = !problem_.calibrated;
     errors.offset = model.offset;
     errors.stretch = std::exp(model.log_stretch);

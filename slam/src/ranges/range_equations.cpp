@@ -65,7 +65,7 @@ double RangeEquations<Pose>::cost(const RangeEstimate<Pose>& at) const {
   const auto& model = at.model;
   const double size = Pose::kDof * static_cast<double>(equations_.constraint_count());
   double cost = 0.5 * (steps_chi2(at) / model.odometry + size * std::log(model.odometry)) +
-                log_scale_cost(model.odometry);
+                network::log_scale_cost(model.odometry);
   for (const auto& term : problem_.terms) {
     const double sigma = model.sigma(term.sigma);
     cost += range_loss(model, range_error(term, at), sigma * sigma).cost;

@@ -254,14 +254,15 @@ class LibrsfGraphReader {
 
  private:
   // The velocities hold since the step before; what came before the first is not known, so that it
-  // takes no time.
+  // takes no time. libRSF's own factor has turns to the left where the second wheel is faster, and
+  // wheels twice the stated length apart: its data sets are so, whatever their descriptions say.
   void step() {
     const double time = text_.number("a time stamp");
-    const double right = text_.number("the velocity of the right wheel");
-    const double left = text_.number("the velocity of the left wheel");
+    const double first = text_.number("the velocity of a wheel");
+    const double second = text_.number("the velocity of the other wheel");
     const double sideways = text_.number("a velocity sideways");
-    const double track = text_.number("the distance between wheels");
-    if (!(track > 0.0)) text_.fail("expected a distance > 0");
+    const double arm = text_.number("half the distance between wheels");
+    if (!(arm > 0.0)) text_.fail("expected a distance > 0");
     Eigen::Vector3d variance;
     for (double& value : variance) {
       value = text_.number("a variance");
@@ -276,10 +277,10 @@ class LibrsfGraphReader {
     const double passed = time - draft_.graph.stamps[to - 1];
     if (!(passed > 0.0)) text_.fail("expected a later time than that of the step before");
     const Pose2 moved = Pose2::exp(
-        passed * Eigen::Vector3d(0.5 * (right + left), sideways, (right - left) / track));
+        passed * Eigen::Vector3d(0.5 * (first + second), sideways, 0.5 * (second - first) / arm));
     // Of the two wheels: mean and difference.
     Eigen::Matrix3d of_wheels;
-    of_wheels << 0.5, 0.5, 0.0, 0.0, 0.0, 1.0, 1.0 / track, -1.0 / track, 0.0;
+    of_wheels << 0.5, 0.5, 0.0, 0.0, 0.0, 1.0, -0.5 / arm, 0.5 / arm, 0.0;
     const Eigen::Matrix3d jacobian = passed * of_wheels;
     draft_.add_step(to - 1, to, moved, jacobian * variance.asDiagonal() * jacobian.transpose(),
                     text_.line_number());

@@ -11,36 +11,10 @@ namespace {
 using spectral::EdgeVerdict;
 using spectral::Verdict;
 
-// A range whose prediction without it has more than so many times its own variance is checked by
-// nothing: rounding of the system's inverse.
-constexpr double kUnchecked = 1e-6;
-
-// What a range would be with the others alone.
-struct LeftOut {
-  double error = 0.0;
-  double variance = 0.0;
-  bool checked = false;
-};
-
-// One step of Newton's from the estimate with the range.
-LeftOut left_out(const RangeLoss& loss, double error, double noise, double predicted,
-                 double curvature) {
-  const double rest = 1.0 - curvature * predicted;
-  if (rest < kUnchecked) return {};
-  const double without = predicted / rest;
-  return {error + without * loss.slope, noise + without, true};
-}
-
-const char* name_of(const RangeLoss& loss) {
-  const auto& p = loss.probability;
-  if (p[kCorrect] >= p[kTooLong] && p[kCorrect] >= p[kAnything]) return "correct";
-  return p[kTooLong] >= p[kAnything] ? "too long" : "false";
-}
-
-void judge_range(const RangeModel& model, const LeftOut& range, double doubt,
+void judge_range(const RangeModel& model, const network::LeftOutRange& range, double doubt,
                  EdgeVerdict& verdict) {
-  const auto loss = range_loss(model, range.error, range.variance);
-  const double correct = loss.probability[kCorrect];
+  const auto loss = network::range_loss(model, range.error, range.variance);
+  const double correct = loss.probability[network::kCorrect];
   verdict.probability = correct;
   verdict.score = range.error * range.error / range.variance;
   verdict.stage = name_of(loss);
@@ -65,15 +39,15 @@ spectral::EdgeVerdicts range_verdicts(const KnownWorld<Pose>& world,
     verdict.to = static_cast<std::uint64_t>(ranges[k].to);
     verdict.verdict = Verdict::ambiguous;
     verdict.stage = "no position";
-    verdict.probability = at.model.share[kCorrect];
+    verdict.probability = at.model.share[network::kCorrect];
     verdicts.push_back(std::move(verdict));
   }
   for (std::size_t k = 0; k < problem.terms.size(); ++k) {
     const auto& term = problem.terms[k];
     const double error = range_error(term, at);
     const double noise = std::pow(at.model.sigma(term.sigma), 2);
-    const auto without = left_out(range_loss(at.model, error, noise), error, noise,
-                                  summary.variances[k], summary.curvatures[k]);
+    const auto without = network::left_out(network::range_loss(at.model, error, noise), error,
+                                           noise, summary.variances[k], summary.curvatures[k]);
     auto& verdict = verdicts[term.range];
     if (without.checked) {
       judge_range(at.model, without, doubt, verdict);

@@ -60,11 +60,11 @@ TEST(RangeGraphFile, SpatialPyfg) {
 TEST(RangeGraphFile, Librsf) {
   const auto file = read(
       "range2 0.5 2.5 0.01 1 2 105 0\nodom2diff 0.5 0 0 0 0.1 1e-4 1e-4 1e-4\n"
-      "odom2diff 1.0 0.3 0.1 0 0.1 1e-4 1e-4 1e-4\nrange2 1.0 2.6 0.01 1 2 105 0\n");
+      "odom2diff 1.0 0.1 0.3 0 0.05 1e-4 1e-4 1e-4\nrange2 1.0 2.6 0.01 1 2 105 0\n");
   const auto& graph = std::get<RangeGraph<Pose2>>(file.graph);
   EXPECT_EQ(graph.names, (std::vector<std::string>{"0", "1", "L105"}));
   ASSERT_EQ(graph.steps.size(), 1u);
-  // Half a second at 0.2 m/s, turning by 2 rad/s.
+  // Half a second at 0.2 m/s, turning to the left by 2 rad/s: the second wheel is the faster one.
   EXPECT_NEAR(graph.steps[0].T_from_to.angle(), 1.0, 1e-12);
   EXPECT_NEAR(graph.steps[0].T_from_to.log()[0], 0.1, 1e-12);
   EXPECT_EQ(graph.ranges[1].from, 1);

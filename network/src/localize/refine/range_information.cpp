@@ -46,24 +46,40 @@ RangeInformation::RangeInformation(const RangeProblem& problem, const std::vecto
       unit_weights_(unit_weights),
       variable_(problem.nodes, -1),
       matrix_(problem.dimension, 0, {}) {
-  for (Index v = 0; v < problem.nodes; ++v) {
-    if (!placement.placed[v] || problem.is_anchor[v]) continue;
+  set_up();
+}
+
+RangeInformation::RangeInformation(const RangeProblem& problem, const std::vector<bool>& use,
+                                   const Placement& placement,
+                                   const std::vector<double>& information)
+    : problem_(problem),
+      use_(use),
+      placement_(placement),
+      given_(&information),
+      variable_(problem.nodes, -1),
+      matrix_(problem.dimension, 0, {}) {
+  set_up();
+}
+
+void RangeInformation::set_up() {
+  for (Index v = 0; v < problem_.nodes; ++v) {
+    if (!placement_.placed[v] || problem_.is_anchor[v]) continue;
     variable_[v] = static_cast<Index>(unknown_nodes_.size());
     unknown_nodes_.push_back(v);
   }
   Pairs pairs;
-  for (std::size_t k = 0; k < problem.ranges.size(); ++k) {
-    const auto& range = problem.ranges[k];
-    if (use[k] && between_unknowns(k))
+  for (std::size_t k = 0; k < problem_.ranges.size(); ++k) {
+    const auto& range = problem_.ranges[k];
+    if (use_[k] && between_unknowns(k))
       pairs.emplace_back(variable_[range.from], variable_[range.to]);
   }
   const std::size_t of_ranges = pairs.size();
-  const auto frame = problem.anchored() ? std::vector<Index>{} : frame_nodes();
+  const auto frame = problem_.anchored() ? std::vector<Index>{} : frame_nodes();
   for (std::size_t a = 0; a < frame.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b)
       pairs.emplace_back(variable_[frame[a]], variable_[frame[b]]);
   }
-  matrix_ = spectral::BlockCholesky(problem.dimension, static_cast<Index>(unknown_nodes_.size()),
+  matrix_ = spectral::BlockCholesky(problem_.dimension, static_cast<Index>(unknown_nodes_.size()),
                                     pairs, spectral::FactorForm::supernodal);
   add_ranges();
   hold_frame(frame, of_ranges);
@@ -98,7 +114,11 @@ double RangeInformation::residual(std::size_t k) const {
 }
 
 double RangeInformation::information(std::size_t k) const {
-  return unit_weights_ ? 1.0 : 1.0 / (problem_.sigmas[k] * problem_.sigmas[k]);
+  return given_ != nullptr ? (*given_)[k] : 1.0 / noise(k);
+}
+
+double RangeInformation::noise(std::size_t k) const {
+  return unit_weights_ ? 1.0 : problem_.sigmas[k] * problem_.sigmas[k];
 }
 
 Point RangeInformation::direction(Index from, Index to) const {
@@ -200,6 +220,12 @@ void RangeInformation::factorise(double regularisation) {
   throw NumericalError("localisation", "the information matrix is not positive definite");
 }
 
+double RangeInformation::log_determinant() {
+  if (unknowns() == 0) return 0.0;
+  factorise(kRegularisation);
+  return matrix_.log_determinant();
+}
+
 std::vector<Eigen::MatrixXd> RangeInformation::diagonal_blocks() const {
   Pairs wanted;
   for (const Index v : unknown_nodes_) wanted.emplace_back(variable_[v], -1);
@@ -229,7 +255,7 @@ std::vector<double> RangeInformation::predicted_variances() {
     // hopeless range together.
     variances[k] = std::pow(std::sqrt(a) + std::sqrt(b), 2);
     if (!between_unknowns(k)) continue;
-    const double own = 1.0 / information(k);
+    const double own = noise(k);
     const bool hopeless =
         unit_weights_ || std::pow(residual(k), 2) > kHopeless * (variances[k] + own);
     if (use_[k] || !hopeless) {
@@ -263,7 +289,7 @@ std::vector<RangeCheck> RangeInformation::check_ranges() {
     auto& check = checks[k];
     check.checked = between_placed(k);
     if (!check.checked) continue;
-    const double own = 1.0 / information(k);
+    const double own = noise(k);
     // The residual of a used range has the variance own - variance, and its
     // leave-one-out residual is larger by own / (own - variance).
     check.redundancy =

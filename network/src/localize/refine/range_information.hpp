@@ -38,10 +38,21 @@ class RangeInformation {
   RangeInformation(const RangeProblem& problem, const std::vector<bool>& use,
                    const Placement& placement, bool unit_weights = false);
 
+  /// With this information, 1 / m^2, of each range in `use`, which must outlive this object.
+  RangeInformation(const RangeProblem& problem, const std::vector<bool>& use,
+                   const Placement& placement, const std::vector<double>& information);
+
   Index unknowns() const { return static_cast<Index>(matrix_.size()); }
 
   /// Leave-one-out tests of all ranges. One factorisation. @throws NumericalError
   std::vector<RangeCheck> check_ranges();
+
+  /// Of each range between placed nodes, the variance of its prediction; of one that is hopelessly
+  /// far off, a bound. One factorisation. @throws NumericalError
+  std::vector<double> predicted_variances();
+
+  /// Of the information matrix. One factorisation. @throws NumericalError
+  double log_determinant();
 
   /// d x d a node, empty where not placed or an anchor. Without anchors those of the
   /// inner constraints: the covariance of the shape, of minimal trace.
@@ -61,19 +72,21 @@ class RangeInformation {
   Eigen::MatrixXd rigid_motions(const std::vector<Index>& nodes) const;
   void factorise(double regularisation);
   std::vector<Eigen::MatrixXd> diagonal_blocks() const;
-  std::vector<double> predicted_variances();
+  void set_up();
   void subtract_cross_terms(const std::vector<std::size_t>& exact,
                             std::vector<double>& variances) const;
   bool between_unknowns(std::size_t k) const;
   bool between_placed(std::size_t k) const;
   double residual(std::size_t k) const;  // measured less predicted
   double information(std::size_t k) const;
+  double noise(std::size_t k) const;  // its variance
 
   const RangeProblem& problem_;
   const std::vector<bool>& use_;
   const Placement& placement_;
-  bool unit_weights_;
-  std::vector<Index> variable_;  // node -> its block, -1 if it is no unknown
+  bool unit_weights_ = false;
+  const std::vector<double>* given_ = nullptr;  // information
+  std::vector<Index> variable_;                 // node -> its block, -1 if it is no unknown
   std::vector<Index> unknown_nodes_;
   spectral::BlockCholesky matrix_;
 };

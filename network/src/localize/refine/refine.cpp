@@ -12,12 +12,29 @@
 namespace isotherm::network::detail {
 namespace {
 
+// What a spring of a length costs, twice, and half the derivatives of that by the length.
+struct LengthCost {
+  double cost = 0.0;
+  double slope = 0.0;
+  double curvature = 0.0;  // of a bound that holds here; >= 0
+};
+
+LengthCost of_spring(const Spring& spring, double length) {
+  const double residual = (length - spring.distance) / spring.sigma;
+  const GemanMcClure kernel{residual > 0.0 ? spring.width_apart : spring.width_close};
+  const double weight = kernel.weight(residual * residual);
+  return {kernel.loss(residual * residual), weight * residual / spring.sigma,
+          weight / (spring.sigma * spring.sigma)};
+}
+
 // The springs as a damped least-squares problem in the free nodes.
+template <class Cost>
 class SparseSystem {
  public:
-  SparseSystem(const RangeProblem& problem, const std::vector<Spring>& springs,
+  SparseSystem(const RangeProblem& problem, const std::vector<Spring>& springs, Cost length_cost,
                Placement& placement)
       : problem_(problem),
+        length_cost_(std::move(length_cost)),
         placement_(placement),
         variable_(problem.nodes, -1),
         matrix_(pattern(springs)),
@@ -51,22 +68,13 @@ class SparseSystem {
 
   double cost() const {
     double sum = 0.0;
-    for (const auto& spring : springs_) {
-      const auto [slope, residual, kernel] = term(spring);
-      sum += kernel.loss(residual * residual);
-    }
+    for (const auto& spring : springs_) sum += length_cost_(spring, arm(spring).norm()).cost;
     return sum;
   }
 
   double largest_step() const { return step_.size() > 0 ? step_.cwiseAbs().maxCoeff() : 0.0; }
 
  private:
-  struct Term {
-    Point slope;  // of the residual in the first end; minus that in the second
-    double residual = 0.0;
-    GemanMcClure kernel;
-  };
-
   // Numbers the free nodes of the springs between placed ones.
   spectral::BlockCholesky pattern(const std::vector<Spring>& springs) {
     Index count = 0;
@@ -80,42 +88,39 @@ class SparseSystem {
       const Index to = variable_[spring.to];
       if (from < 0 && to < 0) continue;
       springs_.push_back(spring);
-      if (from >= 0 && to >= 0) pairs.emplace_back(from, to);
+      if (from >= 0 && to >= 0 && spring.couples) pairs.emplace_back(from, to);
     }
     return {problem_.dimension, count, pairs};
   }
 
-  Term term(const Spring& spring) const {
-    const Point arm = placement_.positions.col(spring.from) - placement_.positions.col(spring.to);
-    const double length = arm.norm();
-    // Where both ends coincide the distance has no derivative; any direction serves.
-    const Point direction =
-        length > 0.0 ? Point(arm / length) : Point(Point::Unit(problem_.dimension, 0));
-    const double residual = (length - spring.distance) / spring.sigma;
-    return {direction / spring.sigma,
-            residual,
-            {residual > 0.0 ? spring.width_apart : spring.width_close}};
+  Point arm(const Spring& spring) const {
+    return placement_.positions.col(spring.from) - placement_.positions.col(spring.to);
   }
 
   void add(const Spring& spring, std::size_t& pair) {
-    const auto [slope, residual, kernel] = term(spring);
-    const double weight = kernel.weight(residual * residual);
-    const Block block = weight * slope * slope.transpose();
+    const Point apart = arm(spring);
+    const double length = apart.norm();
+    // Where both ends coincide the distance has no derivative; any direction serves.
+    const Point direction =
+        length > 0.0 ? Point(apart / length) : Point(Point::Unit(problem_.dimension, 0));
+    const auto term = length_cost_(spring, length);
+    const Block block = term.curvature * direction * direction.transpose();
     const int d = problem_.dimension;
     const Index from = variable_[spring.from];
     const Index to = variable_[spring.to];
     if (from >= 0) {
-      gradient_.segment(from * d, d) += weight * residual * slope;
+      gradient_.segment(from * d, d) += term.slope * direction;
       matrix_.add_diagonal(from, block);
     }
     if (to >= 0) {
-      gradient_.segment(to * d, d) -= weight * residual * slope;
+      gradient_.segment(to * d, d) -= term.slope * direction;
       matrix_.add_diagonal(to, block);
     }
-    if (from >= 0 && to >= 0) matrix_.add_pair(pair++, -block);
+    if (from >= 0 && to >= 0 && spring.couples) matrix_.add_pair(pair++, -block);
   }
 
   const RangeProblem& problem_;
+  Cost length_cost_;
   Placement& placement_;
   std::vector<Index> variable_;  // a node's block, or -1 if it does not move
   std::vector<Spring> springs_;
@@ -144,7 +149,7 @@ RefineOutcome refine(const RangeProblem& problem, const std::vector<Spring>& spr
                      Placement& placement, const RefineOptions& options) {
   constexpr double kStillStep = 1e-6;  // of the typical standard deviation
   const double still_step = kStillStep * problem.typical_sigma;
-  SparseSystem system(problem, springs, placement);
+  SparseSystem system(problem, springs, of_spring, placement);
   if (system.unknowns() == 0) return {};
   double damping = 1e-4;
   double cost = system.cost();
@@ -159,6 +164,73 @@ RefineOutcome refine(const RangeProblem& problem, const std::vector<Spring>& spr
     }
   }
   return {options.max_iterations, false};
+}
+
+double typical_excess(const RangeProblem& problem, double longest) {
+  return std::sqrt(problem.typical_sigma * longest);
+}
+
+namespace {
+
+// Beyond so many deviations a range pulls as hard wherever its ends are, so that no step needs to
+// know of both together: what far nodes are joined by would fill the factor.
+constexpr double kCouples = 8.0;
+constexpr double kNoGain = 1e-3;  // nats: what nobody can tell apart
+
+std::vector<Spring> all_springs(const RangeProblem& problem, const Placement& placement) {
+  std::vector<Spring> springs;
+  for (std::size_t k = 0; k < problem.ranges.size(); ++k) {
+    const auto& range = problem.ranges[k];
+    if (!placement.placed[range.from] || !placement.placed[range.to]) continue;
+    if (problem.is_anchor[range.from] && problem.is_anchor[range.to]) continue;
+    Spring spring{range.from, range.to, range.distance, problem.sigmas[k]};
+    const double length =
+        (placement.positions.col(range.from) - placement.positions.col(range.to)).norm();
+    spring.couples = std::abs(length - range.distance) < kCouples * spring.sigma;
+    springs.push_back(spring);
+  }
+  return springs;
+}
+
+RangeStatistics statistics_of(const RangeMixture& model, const std::vector<Spring>& springs,
+                              const Placement& placement) {
+  RangeStatistics statistics;
+  for (const auto& spring : springs) {
+    const double length =
+        (placement.positions.col(spring.from) - placement.positions.col(spring.to)).norm();
+    statistics.add(
+        range_moments(model, spring.distance - length, std::pow(model.sigma(spring.sigma), 2)));
+  }
+  return statistics;
+}
+
+}  // namespace
+
+RefineOutcome refine_mixture(const RangeProblem& problem, bool too_long, int max_iterations,
+                             const ProgressCallback& progress, RangeMixture& model,
+                             Placement& placement) {
+  const auto springs = all_springs(problem, placement);
+  const auto cost_of = [&model](const Spring& spring, double length) {
+    const auto loss =
+        range_loss(model, spring.distance - length, std::pow(model.sigma(spring.sigma), 2));
+    return LengthCost{2.0 * loss.cost, -loss.slope, loss.curvature};
+  };
+  SparseSystem system(problem, springs, cost_of, placement);
+  if (system.unknowns() == 0) return {};
+  const double excess = typical_excess(problem, model.longest);
+  double damping = 1e-6;
+  for (int k = 0; k < max_iterations; ++k) {
+    const Progress done{"kinds of ranges", static_cast<std::uint64_t>(k),
+                        static_cast<std::uint64_t>(max_iterations)};
+    if (progress && !progress(done)) throw Cancelled();
+    double cost = system.cost();
+    const double before = cost;
+    const bool moved = spectral::damped_step(system, damping, cost);
+    learn_kinds(statistics_of(model, springs, placement), excess, problem.typical_sigma, too_long,
+                model);
+    if (!moved || before - system.cost() < 2.0 * kNoGain) return {k + 1, true};
+  }
+  return {max_iterations, false};
 }
 
 }  // namespace isotherm::network::detail

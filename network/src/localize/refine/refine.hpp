@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "isotherm/base/progress.hpp"
+#include "isotherm/network/localize/range_mixture.hpp"
 #include "localize/problem/range_problem.hpp"
 
 namespace isotherm::network::detail {
@@ -18,6 +19,7 @@ struct Spring {
   double sigma = 1.0;
   double width_apart = std::numeric_limits<double>::infinity();  ///< ends farther than `distance`
   double width_close = std::numeric_limits<double>::infinity();  ///< ends closer than that
+  bool couples = true;  ///< whether a step takes both ends together
 };
 
 struct RefineOptions {
@@ -44,5 +46,17 @@ RefineOutcome refine(const RangeProblem& problem, const std::vector<bool>& use,
 /// `options.width` does not count.
 RefineOutcome refine(const RangeProblem& problem, const std::vector<Spring>& springs,
                      Placement& placement, const RefineOptions& options);
+
+/// Moves the placed nodes that are no anchors, and the shares and the excess of `model`, to a
+/// maximum of the joint density of all ranges between placed nodes: damped steps and most likely
+/// parameters by turns (expectation maximisation). `too_long` says whether ranges can be. @throws
+/// Cancelled
+RefineOutcome refine_mixture(const RangeProblem& problem, bool too_long, int max_iterations,
+                             const ProgressCallback& progress, RangeMixture& model,
+                             Placement& placement);
+
+/// Excess to begin with of ranges that are too long: between what noise hides and the longest
+/// range.
+double typical_excess(const RangeProblem& problem, double longest);
 
 }  // namespace isotherm::network::detail

@@ -48,8 +48,8 @@ constexpr std::array<EnumName<NodeStatus>, 6> enum_names(NodeStatus) {
 
 struct LocalizeOptions {
   LocalizeMethod method = LocalizeMethod::robust;
-  /// Probability with which a correct range may be called false; in (0, 1). The gate
-  /// of the leave-one-out chi-squared test is the quantile of the rest.
+  /// Probability with which a correct range may be called false, until it is judged by all others;
+  /// in (0, 1). The gate of what fits a map is the chi-squared quantile of the rest.
   double significance = 1e-3;
   /// A node, or a part of the network, counts as localised if its second-best place is
   /// less likely than its best one by this factor; in (0, 1). The share of false ranges plays a
@@ -113,8 +113,8 @@ struct LocalizeResult {
   Eigen::MatrixXd positions;                 ///< dimension x nodes; NaN where there is none
   std::vector<Eigen::MatrixXd> covariances;  ///< d x d a localised node, empty for others
   std::vector<NodeStatus> nodes;
-  /// One a range, in order; ends are positions among the nodes. The score is the
-  /// leave-one-out chi-squared.
+  /// One a range, in order; ends are positions among the nodes. The score is the log of the odds
+  /// of being wrong, given all others; with least squares the leave-one-out chi-squared.
   spectral::EdgeVerdicts verdicts;
   LocalizeStatus status = LocalizeStatus::converged;
   bool anchored = false;      ///< false: positions are known up to an isometry
@@ -131,14 +131,14 @@ struct LocalizeResult {
 
 /// Positions, covariances, and a verdict on every range.
 ///
-/// Heat-kernel pruning, first maps (patches stitched by rotation synchronisation, shortest
-/// paths unfolded by springs, or cliques grown), robust refinement, leave-one-out tests, least
-/// squares on what is left: docs/concepts/localization.md. Where most nodes near each other
-/// have a range, places beside nodes without one count as less likely. Landmarks of the network
-/// with a position are the anchors; they do not move. Without anchors the largest part is placed
-/// in a frame of its own, and covariances are those of the shape (minimal trace). With anchors
-/// in too small a number, or on one line (plane), nodes whose mirror image fits as well get that
-/// status and no position.
+/// Heat-kernel pruning, first maps (patches stitched by rotation synchronisation, shortest paths
+/// unfolded by springs, or cliques grown), robust refinement, then the maximum of the joint density
+/// of all ranges, each of which may be correct, too long or anything:
+/// docs/concepts/localization.md. Where most nodes near each other have a range, places beside
+/// nodes without one count as less likely. Landmarks of the network with a position are the
+/// anchors; they do not move. Without anchors the largest part is placed in a frame of its own, and
+/// covariances are those of the shape (minimal trace). With anchors in too small a number, or on
+/// one line (plane), nodes whose mirror image fits as well get that status and no position.
 /// Memory O(nodes + ranges) apart from the fill of a sparse factorisation.
 /// @throws InvalidArgument for options out of range, or a network with a range that
 ///   is negative, not finite, from a node to itself or to one that does not exist;

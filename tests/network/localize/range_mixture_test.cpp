@@ -1,15 +1,15 @@
-#include "ranges/range_model.hpp"
+#include "isotherm/network/localize/range_mixture.hpp"
 
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
-namespace isotherm::slam::detail {
+namespace isotherm::network {
 namespace {
 
-RangeModel model_of(double excess) {
-  RangeModel model;
+RangeMixture model_of(double excess) {
+  RangeMixture model;
   model.share = {0.6, 0.3, 0.1};
   model.excess = excess;
   model.longest = 50.0;
@@ -24,7 +24,7 @@ struct Integrated {
   double excess = 0.0;
 };
 
-Integrated integrated(const RangeModel& model, double error, double sigma) {
+Integrated integrated(const RangeMixture& model, double error, double sigma) {
   const auto normal = [&](double z) {
     return std::exp(-0.5 * z * z / (sigma * sigma)) / (sigma * std::sqrt(2.0 * std::numbers::pi));
   };
@@ -51,7 +51,7 @@ Integrated integrated(const RangeModel& model, double error, double sigma) {
   return result;
 }
 
-TEST(RangeModel, TheDensityIsThatOfANormalErrorAndAnExponentialExcess) {
+TEST(RangeMixture, TheDensityIsThatOfANormalErrorAndAnExponentialExcess) {
   for (const double excess : {0.3, 2.0, 20.0}) {
     const auto model = model_of(excess);
     for (const double error : {-2.0, -0.3, 0.0, 0.4, 1.0, 6.0}) {
@@ -69,7 +69,7 @@ TEST(RangeModel, TheDensityIsThatOfANormalErrorAndAnExponentialExcess) {
   }
 }
 
-TEST(RangeModel, TheSlopeIsTheDerivativeOfTheCost) {
+TEST(RangeMixture, TheSlopeIsTheDerivativeOfTheCost) {
   const auto model = model_of(1.5);
   const double h = 1e-5;
   for (double error = -8.0; error < 12.0; error += 0.37) {
@@ -83,7 +83,7 @@ TEST(RangeModel, TheSlopeIsTheDerivativeOfTheCost) {
   }
 }
 
-TEST(RangeModel, WhatIsFarOffSaysNothing) {
+TEST(RangeMixture, WhatIsFarOffSaysNothing) {
   const auto model = model_of(0.01);
   for (const double error : {-1e6, -100.0, 1e6}) {
     const auto loss = range_loss(model, error, 1e-6);
@@ -94,7 +94,7 @@ TEST(RangeModel, WhatIsFarOffSaysNothing) {
   }
 }
 
-TEST(RangeModel, WithoutBiasNothingIsTooLong) {
+TEST(RangeMixture, WithoutBiasNothingIsTooLong) {
   auto model = model_of(1.0);
   model.share = {0.9, 0.0, 0.1};
   const auto loss = range_loss(model, 1.0, 0.25);
@@ -102,13 +102,13 @@ TEST(RangeModel, WithoutBiasNothingIsTooLong) {
   EXPECT_TRUE(std::isfinite(loss.cost));
 }
 
-TEST(RangeModel, ScaleAndKindsAreLearnedFromWhatIsThere) {
+TEST(RangeMixture, ScaleAndKindsAreLearnedFromWhatIsThere) {
   RangeStatistics statistics;
   statistics.count = {800.0, 150.0, 50.0};
   statistics.squared_noise = 4.0 * 950.0;
   statistics.excess = 150.0 * 2.5;
-  RangeModel model;
-  learn_kinds(statistics, 1.0, true, model);
+  RangeMixture model;
+  learn_kinds(statistics, 1.0, 0.0, true, model);
   EXPECT_NEAR(model.share[kTooLong], 151.0 / 1003.0, 1e-12);
   EXPECT_NEAR(model.excess, 2.5, 0.02);
   EXPECT_NEAR(most_likely_scale(statistics, 0.0, 1.0), 2.0, 0.01);
@@ -119,4 +119,4 @@ TEST(RangeModel, ScaleAndKindsAreLearnedFromWhatIsThere) {
 }
 
 }  // namespace
-}  // namespace isotherm::slam::detail
+}  // namespace isotherm::network

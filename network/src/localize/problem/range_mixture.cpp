@@ -1,16 +1,22 @@
-#include "ranges/range_model.hpp"
+#include "isotherm/network/localize/range_mixture.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace isotherm::slam::detail {
+namespace isotherm::network {
 namespace {
 
 using std::numbers::pi;
 
 // A factor of ten: the deviation of everything that has a scale and nothing is known of.
 constexpr double kFactorOfTen = std::numbers::ln10;
+
+constexpr double kTold = 3.0;  // deviations: what noise hardly ever exceeds
+
+// A range whose prediction without it has more than so many times its own variance is checked by
+// nothing: rounding of the system's inverse.
+constexpr double kUnchecked = 1e-6;
 
 // log of exp(z^2) erfc(z).
 double log_scaled_erfc(double z) {
@@ -84,7 +90,7 @@ double most_likely_log_mean(double count, double sum, double centre) {
 
 }  // namespace
 
-RangeLoss range_loss(const RangeModel& model, double error, double variance) {
+RangeLoss range_loss(const RangeMixture& model, double error, double variance) {
   const double sigma = std::sqrt(variance);
   ByKind cost{};
   ByKind slope{};
@@ -119,7 +125,21 @@ RangeLoss range_loss(const RangeModel& model, double error, double variance) {
   return result;
 }
 
-RangeMoments range_moments(const RangeModel& model, double error, double variance) {
+const char* name_of(const RangeLoss& loss) {
+  const auto& p = loss.probability;
+  if (p[kCorrect] >= p[kTooLong] && p[kCorrect] >= p[kAnything]) return "correct";
+  return p[kTooLong] >= p[kAnything] ? "too long" : "false";
+}
+
+LeftOutRange left_out(const RangeLoss& loss, double error, double noise, double predicted,
+                      double curvature) {
+  const double rest = 1.0 - curvature * predicted;
+  if (rest < kUnchecked) return {};
+  const double without = predicted / rest;
+  return {error + without * loss.slope, noise + without, true};
+}
+
+RangeMoments range_moments(const RangeMixture& model, double error, double variance) {
   RangeMoments moments;
   moments.probability = range_loss(model, error, variance).probability;
   moments.squared_noise = moments.probability[kCorrect] * error * error / variance;
@@ -140,8 +160,8 @@ void RangeStatistics::add(const RangeMoments& moments) {
   excess += moments.excess;
 }
 
-void learn_kinds(const RangeStatistics& statistics, double typical_excess, bool too_long,
-                 RangeModel& model) {
+void learn_kinds(const RangeStatistics& statistics, double typical_excess, double sigma,
+                 bool too_long, RangeMixture& model) {
   const auto& count = statistics.count;
   const double kinds = too_long ? 3.0 : 2.0;
   const double all = count[kCorrect] + count[kTooLong] + count[kAnything] + kinds;
@@ -150,8 +170,10 @@ void learn_kinds(const RangeStatistics& statistics, double typical_excess, bool 
   }
   if (!too_long) model.share[kTooLong] = 0.0;
   if (too_long) {
-    model.excess = std::exp(
+    const double likeliest = std::exp(
         most_likely_log_mean(count[kTooLong], statistics.excess, std::log(typical_excess)));
+    // An excess that noise hides is noise.
+    model.excess = std::max(likeliest, kTold * sigma);
   }
 }
 
@@ -169,7 +191,7 @@ double most_likely_variance(double squares, double redundancy) {
 
 double log_scale_cost(double variance) { return log_normal_cost(0.5 * std::log(variance)); }
 
-double log_prior_cost(const RangeModel& model, double typical_excess, bool too_long) {
+double log_prior_cost(const RangeMixture& model, double typical_excess, bool too_long) {
   // Dirichlet's distribution after one range of each kind.
   double cost = log_normal_cost(std::log(model.scale)) - std::log(too_long ? 120.0 : 6.0);
   for (std::size_t kind = 0; kind < kRangeKinds; ++kind) {
@@ -179,4 +201,4 @@ double log_prior_cost(const RangeModel& model, double typical_excess, bool too_l
   return cost;
 }
 
-}  // namespace isotherm::slam::detail
+}  // namespace isotherm::network
