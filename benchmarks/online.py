@@ -16,7 +16,7 @@ import sys
 import tempfile
 import textwrap
 
-from support import online_memory, online_peers, online_stops, online_times
+from support import online_memory, online_peers, online_prefixes, online_stops, online_times
 from support.experiment import ROOT, argument_parser
 from support.runs import Command, Results, read_csv, run_all
 from support.streams import CITY, prepare
@@ -120,19 +120,22 @@ def main():
     command, results = Command(arguments.command), Results(ROOT / "build" / "online")
     cells = cell_tasks(command, arguments.data, arguments.graphs)
     others = {name: part.tasks(command, arguments.data)
-              for name, part in (("peers", online_peers), ("stops", online_stops),
-                                 ("times", online_times), ("memory", online_memory))}
+              for name, part in (("prefixes", online_prefixes), ("peers", online_peers),
+                                 ("times", online_times), ("stops", online_stops),
+                                 ("memory", online_memory))}
     if not arguments.page_only:
         first = {key: task for key, task in cells.items() if not key.endswith(f" {FRACTIONS[-1]}")}
         for tasks in [first, *others.values(), cells]:
             run_all(tasks, results, arguments.jobs)
-    found = {name: [row for row in map(results.get, tasks) if row and "failed" not in row]
-             for name, tasks in [*others.items(), ("cells", cells)]}
+    measured = {name: {key: row for key in tasks if (row := results.get(key)) and "failed" not in row}
+                for name, tasks in [*others.items(), ("cells", cells)]}
+    found = {name: list(rows.values()) for name, rows in measured.items()}
     found["cells"].sort(key=lambda row: GRAPHS.index(row["graph"]))
     folder = ROOT / "docs" / "results"
     write_cells(found["cells"], folder / "data" / "online.csv")
     lines = ["# Verdicts while a graph comes in", "", *cells_section(found["cells"], len(cells)),
-             *online_peers.section(found["peers"]), *online_times.section(found["times"], folder),
+             *online_prefixes.section(found["prefixes"]), *online_peers.section(measured["peers"]),
+             *online_times.section(found["times"], folder),
              *online_stops.section(found["stops"]), *online_memory.section(found["memory"])]
     (folder / "online.md").write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
     return 0

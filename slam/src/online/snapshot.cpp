@@ -16,7 +16,7 @@
 namespace isotherm::slam::detail {
 namespace {
 
-// Times as many edges until the density of near pairs is found anew.
+// Times as many edges, or accepted loops, until the density of near pairs is found anew.
 constexpr double kGrown = 1.1;
 
 }  // namespace
@@ -54,12 +54,7 @@ void Snapshot<Pose>::explain(const std::vector<const Snapshot*>& others, bool ev
   };
   for (const Snapshot* other : others) {
     if (!other->explained()) continue;
-    auto [explanation, findings] = carry(*other);
-    const bool about_the_same = static_cast<double>(graph_.constraints.size()) <
-                                kGrown * static_cast<double>(other->nearness_of_);
-    if (about_the_same) nearness_of_ = other->nearness_of_;
-    climb_->hold_nearness(!everywhere && about_the_same);
-    add(climb_->resume(std::move(explanation), std::move(findings)));
+    add(go_on_from(*other, !everywhere));
   }
   climb_->hold_nearness(false);
   if (everywhere) {
@@ -74,6 +69,28 @@ void Snapshot<Pose>::explain(const std::vector<const Snapshot*>& others, bool ev
   climb_->hold_nearness(!everywhere);
   climb_->stand_at(best_);
   judge();
+}
+
+// Where many loops are accepted the map is another one, which they may have drawn together: what is
+// near by chance is found anew then.
+template <class Pose>
+Explanation<Pose> Snapshot<Pose>::go_on_from(const Snapshot& other, bool hold_nearness) {
+  const auto [standpoint, findings] = carry(other);
+  const auto accepted = [](const Explanation<Pose>& found) {
+    return static_cast<double>(std::ranges::count(found.accepted, true));
+  };
+  const bool about_the_same = static_cast<double>(graph_.constraints.size()) <
+                              kGrown * static_cast<double>(other.nearness_of_);
+  if (hold_nearness && about_the_same) {
+    climb_->hold_nearness(true);
+    auto found = climb_->resume(standpoint, findings);
+    if (accepted(found) <= kGrown * (accepted(standpoint) + kFewLoops)) {
+      nearness_of_ = other.nearness_of_;
+      return found;
+    }
+  }
+  climb_->hold_nearness(false);
+  return climb_->resume(standpoint, findings);
 }
 
 // Of loops that came since, none is accepted; scales and weights are those that were learnt.

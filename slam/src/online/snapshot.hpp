@@ -55,6 +55,7 @@ class Snapshot {
   using Standpoint = std::pair<Explanation<Pose>, typename Assessment<Pose>::Findings>;
 
   void prepare(const Pace& pace);
+  Explanation<Pose> go_on_from(const Snapshot& other, bool hold_nearness);
   Standpoint carry(const Snapshot& other) const;
   void carry_layout(const Snapshot& other, typename Estimate<Pose>::Layout& layout) const;
   void judge();

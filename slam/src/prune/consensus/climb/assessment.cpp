@@ -49,17 +49,22 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   rescale(now.shapes);
   found_.mixture = expected_mixture(now.scale.loops, now.shares);
   find_peak(now);
-  if (!nearness_held_) found_.near = objective_.near(estimate_.poses());
+  if (!nearness_held_) find_nearness();
   if (ceiling(now) < least) return false;
   predict(now);
   weigh(now);
   add_prior(now);
   now.layout = estimate_.layout();
-  if (pace_) {
-    pace_(kCovarianceWork * estimate_.work() + (nearness_held_ ? 0.0 : kNearnessWork));
-  }
+  if (pace_) pace_(kCovarianceWork * estimate_.work());
   now.evidence = evidence(now);
   return true;
+}
+
+template <class Pose>
+void Assessment<Pose>::find_nearness() {
+  found_.near = objective_.near(estimate_.poses());
+  nearness_work_ += kNearnessWork;
+  if (pace_) pace_(kNearnessWork);
 }
 
 // Of the evidence, before redundancy is known: the more there is, the narrower is the peak.

@@ -26,6 +26,9 @@ class Assessment {
   /// changes slowly, and takes longest on small graphs.
   void hold_nearness(bool held) { nearness_held_ = held; }
 
+  /// Work so far, as pace is told, on that density, which takes the same on every graph.
+  double nearness_work() const noexcept { return nearness_work_; }
+
   /// Sets the weights, the layout and the evidence of `now`, or gives up where that cannot reach
   /// `least`: whether it went to the end.
   /// @throws NumericalError if the normal equations break down
@@ -63,6 +66,7 @@ class Assessment {
  private:
   void rescale(const Shapes<Pose>& shapes);
   void find_peak(Explanation<Pose>& now);
+  void find_nearness();
   double ceiling(Explanation<Pose>& now) const;
   double evidence(const Explanation<Pose>& now) const;
   bool reweigh(Explanation<Pose>& now);
@@ -82,6 +86,7 @@ class Assessment {
   Estimate<Pose> estimate_;
   typename Estimate<Pose>::Layout odometry_;
   bool nearness_held_ = false;
+  double nearness_work_ = 0.0;
 };
 
 extern template class Assessment<Pose2>;
