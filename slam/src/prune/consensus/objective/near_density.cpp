@@ -179,7 +179,7 @@ std::size_t NearDensity<Pose>::class_of(std::size_t from, std::size_t to) const 
 template <class Pose>
 void NearDensity<Pose>::count_pairs(std::size_t anchor,
                                     std::array<double, kProposalClasses>& pairs) const {
-  const auto [first, last] = std::ranges::equal_range(chain_, chain_[anchor]);
+  const auto [first, last] = std::equal_range(chain_.begin(), chain_.end(), chain_[anchor]);
   const auto begin = static_cast<double>(first - chain_.begin());
   const auto end = static_cast<double>(last - chain_.begin());
   pairs[kSpanClasses] += static_cast<double>(chain_.size()) - (end - begin);
