@@ -83,13 +83,12 @@ void OnlineEngine<Pose>::go_on() {
   follow_up(std::min(following_credit(), work));
 }
 
-// Of one batch on so many loops: links, and so the work of each piece, are as many more than in the
-// last search from every start as there are more loops; of pieces there are more by the root of
-// that (measured: 5 to 80 loops of CSAIL, Bovisa04, ringCity and B25b).
+// Of one batch on so many loops: as many pieces as in the last search from every start, with as
+// many more links in each as there are more loops.
 template <class Pose>
 double OnlineEngine<Pose>::batch_work(Index loops) const {
-  const double growth = static_cast<double>(loops) / static_cast<double>(search_work_.loops);
-  return std::sqrt(growth) * (search_work_.constant + search_work_.growing * growth);
+  const double growth = static_cast<double>(loops) / static_cast<double>(batch_of_);
+  return batch_work_.constant + batch_work_.growing * growth;
 }
 
 template <class Pose>
@@ -127,10 +126,11 @@ void OnlineEngine<Pose>::search_everywhere(double budget) {
   }
   if (!run(*everywhere_, budget)) return;
   const auto map = everywhere_->map;
-  const double work = everywhere_->task->spent();
-  const double constant = map->explained() ? map->assessment().nearness_work() : 0.0;
-  search_work_ = {constant, work - constant, everywhere_->loops};
-  searches_work_ += work;
+  if (map->explained()) {
+    batch_work_ = map->batch_work();
+    batch_of_ = everywhere_->loops;
+  }
+  searches_work_ += everywhere_->task->spent();
   everywhere_.reset();
   const bool latest = !map_ || map->graph().constraints.size() >= map_->graph().constraints.size();
   if (latest) {

@@ -53,14 +53,6 @@ class OnlineEngine {
     std::unique_ptr<PacedTask> task;
   };
 
-  /// Work of a search from every start: on the density of near pairs, which takes the same on every
-  /// graph, and the rest, which grows with loops.
-  struct SearchWork {
-    double constant = 0.0;
-    double growing = 0.0;
-    Index loops = 1;  // that it had
-  };
-
   /// The verdict on an edge, unless it is a step.
   struct Row {
     std::optional<LoopChange> now;
@@ -104,10 +96,11 @@ class OnlineEngine {
   std::map<Index, Standing> standings_;  // of these
   std::optional<Search> everywhere_;
   std::optional<Search> next_;
-  Index searched_ = 0;  // loops at the last search from every start
-  SearchWork search_work_;
-  double searches_work_ = 0.0;   // of all of those
-  double following_work_ = 0.0;  // of following up
+  Index searched_ = 0;                             // loops at the last search from every start
+  typename Snapshot<Pose>::BatchWork batch_work_;  // at that
+  Index batch_of_ = 1;                             // loops that it had
+  double searches_work_ = 0.0;                     // of all of those
+  double following_work_ = 0.0;                    // of following up
 };
 
 extern template class OnlineEngine<Pose2>;
