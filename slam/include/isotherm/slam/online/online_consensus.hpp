@@ -93,7 +93,8 @@ class OnlineConsensus {
   spectral::EdgeVerdicts verdicts() const;
 
   /// All vertices and edges so far; where there are loops, with the current estimate as poses,
-  /// which takes one solution of the map where the search has not seen all loops yet.
+  /// which takes a few solutions of the map where the search has not seen all loops yet: without
+  /// those that all others contradict, whatever was thought of them when they came.
   PoseGraph<Pose> graph() const;
 
   /// The same as added, without an estimate: what a file of the same edges holds.
