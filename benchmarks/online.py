@@ -16,7 +16,7 @@ import sys
 import tempfile
 import textwrap
 
-from support import online_memory, online_peers, online_stops, online_times
+from support import online_memory, online_peers, online_prefixes, online_stops, online_times
 from support.experiment import ROOT, argument_parser
 from support.runs import Command, Results, read_csv, run_all
 from support.streams import CITY, prepare
@@ -77,8 +77,9 @@ def cells_section(rows, planned):
     lines = ["Made by `benchmarks/online.py`; every cell is in [data/online.csv](data/online.csv).",
              "Each graph is replayed in order of time by `isotherm follow`, one thread, clean and with",
              "false loops by `isotherm corrupt` (`--fraction` of all loops). *ms* is the CPU time of a",
-             "call, *wall* the same on the clock while other programs used the machine; *batches* is the",
-             "CPU time of it all, the end included, in runs of `isotherm prune`; *differ* counts final",
+             "call, *wall* the same on the clock while other programs used the machine (load 4 to 12 on two",
+             "cores); *batches* is the CPU time of it all, the end included, in runs of `isotherm prune`, and",
+             "uncertain by a tenth under that load; *differ* counts final",
              "verdicts that are not the batch's. P and R are of what is kept, at the end and as the mean",
              "over all edges on the way; delay is in poses from a loop's coming to its final verdict, of",
              "loops that end right: median and nine of ten. All loops of a file count as true; Bovisa04's, of a",
@@ -120,19 +121,22 @@ def main():
     command, results = Command(arguments.command), Results(ROOT / "build" / "online")
     cells = cell_tasks(command, arguments.data, arguments.graphs)
     others = {name: part.tasks(command, arguments.data)
-              for name, part in (("peers", online_peers), ("stops", online_stops),
-                                 ("times", online_times), ("memory", online_memory))}
+              for name, part in (("prefixes", online_prefixes), ("peers", online_peers),
+                                 ("times", online_times), ("stops", online_stops),
+                                 ("memory", online_memory))}
     if not arguments.page_only:
         first = {key: task for key, task in cells.items() if not key.endswith(f" {FRACTIONS[-1]}")}
         for tasks in [first, *others.values(), cells]:
             run_all(tasks, results, arguments.jobs)
-    found = {name: [row for row in map(results.get, tasks) if row and "failed" not in row]
-             for name, tasks in [*others.items(), ("cells", cells)]}
+    measured = {name: {key: row for key in tasks if (row := results.get(key)) and "failed" not in row}
+                for name, tasks in [*others.items(), ("cells", cells)]}
+    found = {name: list(rows.values()) for name, rows in measured.items()}
     found["cells"].sort(key=lambda row: GRAPHS.index(row["graph"]))
     folder = ROOT / "docs" / "results"
     write_cells(found["cells"], folder / "data" / "online.csv")
     lines = ["# Verdicts while a graph comes in", "", *cells_section(found["cells"], len(cells)),
-             *online_peers.section(found["peers"]), *online_times.section(found["times"], folder),
+             *online_prefixes.section(found["prefixes"]), *online_peers.section(measured["peers"]),
+             *online_times.section(found["times"], folder),
              *online_stops.section(found["stops"]), *online_memory.section(found["memory"])]
     (folder / "online.md").write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
     return 0

@@ -17,14 +17,18 @@ namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-// Searches from every start begin where one of the loops can be pruned, and then whenever there are
-// twice as many, and the next one may take as long as all before it: together they take about two
-// batches at most. Each is done by the time that there are a quarter more edges; of so few loops,
-// as soon as it can be.
+// Searches from every start begin where one of the loops can be pruned. Where effort allows it
+// there is another one for at least twice as many loops, or for any more when none come; and in any
+// case for four times as many, of which the last one says little. Each is done by the time that
+// there are a quarter more edges; of so few loops, as soon as it can be.
 constexpr Index kFirst = kFewLoops;
 constexpr Index kGrowth = 2;
+constexpr Index kMostGrowth = 4;
 constexpr double kUntil = 0.25;
 constexpr Index kFew = 32;
+
+// Of all work, what following up may do at most.
+constexpr double kFollowing = 1.0 / 3.0;
 
 // What a call may do: about one solution of the map, of so many factorisations, and of a small one
 // some 20 ms.
@@ -56,8 +60,9 @@ void OnlineEngine<Pose>::add_silently(VertexId from, VertexId to, const Pose& T_
                                       const Matrix& information, LinkKind link) {
   const bool step = log_.add(from, to, T_from_to, information, link).step;
   rows_.emplace_back();
-  if (!step) ++loops_;
-  credit_ += options_.effort * search_work_;
+  if (step) return;
+  ++loops_;
+  last_loop_ = static_cast<Index>(rows_.size()) - 1;
 }
 
 template <class Pose>
@@ -73,25 +78,58 @@ void OnlineEngine<Pose>::go_on() {
   if (loops_ == 0) return;
   const auto work = most_work(rows_.size());
   const bool few = searched_ <= kFew;
-  search_everywhere(!map_ ? kNoLimit : few ? work : std::min(work, search_work_ / kUntil));
-  follow_up(std::min(credit_, work));
+  const double until = batch_work(loops_) / (kUntil * static_cast<double>(rows_.size()));
+  search_everywhere(!map_ ? kNoLimit : few ? work : std::min(work, until));
+  follow_up(std::min(following_credit(), work));
+}
+
+// Of one batch on so many loops: as many pieces as in the last search from every start, with as
+// many more links in each as there are more loops.
+template <class Pose>
+double OnlineEngine<Pose>::batch_work(Index loops) const {
+  const double growth = static_cast<double>(loops) / static_cast<double>(batch_of_);
+  return batch_work_.constant + batch_work_.growing * growth;
+}
+
+template <class Pose>
+double OnlineEngine<Pose>::following_credit() const {
+  return kFollowing * options_.effort * batch_work(loops_) - following_work_;
+}
+
+// All work that is done stays within what effort allows, of a batch on no more loops than twice
+// those of the last search: beyond that it is not known.
+template <class Pose>
+bool OnlineEngine<Pose>::is_search_due() const {
+  if (loops_ < kFirst || loops_ == searched_) return false;
+  if (loops_ >= kMostGrowth * searched_) return true;
+  const double batch = batch_work(std::min(loops_, kGrowth * searched_));
+  if (searches_work_ + following_work_ + batch > options_.effort * batch) return false;
+  return loops_ >= kGrowth * searched_ || is_quiet();
+}
+
+// Whether no loop came for as many calls as a search takes, so that none is to be expected until it
+// is done, either.
+template <class Pose>
+bool OnlineEngine<Pose>::is_quiet() const {
+  const auto calls = static_cast<double>(static_cast<Index>(rows_.size()) - 1 - last_loop_);
+  return calls * most_work(rows_.size()) >= batch_work(loops_);
 }
 
 // The first loop's, to hold others against; then from every start, where loops have grown enough.
 template <class Pose>
 void OnlineEngine<Pose>::search_everywhere(double budget) {
   if (!everywhere_) {
-    const double next = most_search_work_ * static_cast<double>(rows_.size());
-    const bool due = loops_ >= kFirst && loops_ >= kGrowth * searched_ && searches_work_ <= next;
+    const bool due = is_search_due();
     if (!due && map_) return;
     if (due) searched_ = loops_;
     everywhere_ = begin(due);
   }
   if (!run(*everywhere_, budget)) return;
   const auto map = everywhere_->map;
-  const double edges = static_cast<double>(map->graph().constraints.size());
-  search_work_ = everywhere_->task->spent() / edges;
-  most_search_work_ = std::max(most_search_work_, search_work_);
+  if (map->explained()) {
+    batch_work_ = map->batch_work();
+    batch_of_ = everywhere_->loops;
+  }
   searches_work_ += everywhere_->task->spent();
   everywhere_.reset();
   const bool latest = !map_ || map->graph().constraints.size() >= map_->graph().constraints.size();
@@ -118,7 +156,7 @@ void OnlineEngine<Pose>::follow_up(double budget) {
   }
   const double before = next_->task->spent();
   const bool done = run(*next_, budget);
-  credit_ -= next_->task->spent() - before;
+  following_work_ += next_->task->spent() - before;
   if (!done) return;
   const auto map = next_->map;
   next_.reset();
@@ -127,7 +165,7 @@ void OnlineEngine<Pose>::follow_up(double budget) {
 
 template <class Pose>
 typename OnlineEngine<Pose>::Search OnlineEngine<Pose>::begin(bool everywhere) const {
-  Search search{std::make_shared<Snapshot<Pose>>(log_.graph(), options_.consensus)};
+  Search search{std::make_shared<Snapshot<Pose>>(log_.graph(), options_.consensus), loops_, {}, {}};
   for (const auto& other : {map_, rival_}) {
     if (other) search.from.push_back(other);
   }
@@ -286,7 +324,6 @@ std::vector<LoopChange> OnlineEngine<Pose>::catch_up() {
     everywhere_ = begin(loops_ >= kFirst);
     searched_ = loops_;
     search_everywhere(kNoLimit);
-    credit_ = 0.0;
   }
   return changes();
 }

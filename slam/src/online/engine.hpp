@@ -17,8 +17,8 @@
 namespace isotherm::slam::detail {
 
 /// Judges each loop when it comes, by the latest snapshot that is explained, and meanwhile explains
-/// the next ones: where the last one stood, as often as effort allows, and from every start
-/// each time loops have doubled.
+/// the next ones: from where the last one stood and, where loops have grown, from every start, as
+/// often as effort allows.
 template <class Pose>
 class OnlineEngine {
  public:
@@ -48,6 +48,7 @@ class OnlineEngine {
   /// A snapshot that is being explained.
   struct Search {
     std::shared_ptr<Snapshot<Pose>> map;
+    Index loops = 0;  // that it has
     std::vector<std::shared_ptr<const Snapshot<Pose>>> from;
     std::unique_ptr<PacedTask> task;
   };
@@ -61,6 +62,10 @@ class OnlineEngine {
   void ask_to_go_on() const;
   void go_on();
   void search_everywhere(double budget);
+  bool is_search_due() const;
+  bool is_quiet() const;
+  double batch_work(Index loops) const;
+  double following_credit() const;
   void follow_up(double budget);
   Search begin(bool everywhere) const;
   bool run(Search& search, double budget);
@@ -83,6 +88,7 @@ class OnlineEngine {
   std::vector<Row> rows_;     // one an edge
   std::vector<Index> fresh_;  // edges whose verdict may have changed since changes()
   Index loops_ = 0;           // that have come
+  Index last_loop_ = 0;       // its edge
   std::shared_ptr<const Snapshot<Pose>> map_;
   std::shared_ptr<const Snapshot<Pose>> rival_;  // of a search that led higher
   std::optional<detail::Outlook<Pose>> outlook_;
@@ -90,11 +96,11 @@ class OnlineEngine {
   std::map<Index, Standing> standings_;  // of these
   std::optional<Search> everywhere_;
   std::optional<Search> next_;
-  Index searched_ = 0;             // loops at the last search from every start
-  double search_work_ = 0.0;       // of that, an edge
-  double most_search_work_ = 0.0;  // of any so far
-  double searches_work_ = 0.0;     // of all of them
-  double credit_ = 0.0;            // work that following up may do
+  Index searched_ = 0;                             // loops at the last search from every start
+  typename Snapshot<Pose>::BatchWork batch_work_;  // at that
+  Index batch_of_ = 1;                             // loops that it had
+  double searches_work_ = 0.0;                     // of all of those
+  double following_work_ = 0.0;                    // of following up
 };
 
 extern template class OnlineEngine<Pose2>;

@@ -11,19 +11,21 @@ template <class Pose>
 void settle_poses(PoseGraph<Pose>& graph, const std::vector<bool>& is_step,
                   const std::vector<bool>& used, const Accuracy<Pose>& accuracy) {
   PoseGraph<Pose> part{graph.ids, graph.poses, {}, graph.fixed};
+  EdgeRoles roles;
   for (std::size_t k = 0; k < graph.constraints.size(); ++k) {
     if (!is_step[k] && !used[k]) continue;
     auto constraint = graph.constraints[k];
     const auto& variances = is_step[k] ? accuracy.steps : accuracy.loops;
     const typename Pose::Tangent root = variances.cwiseSqrt().cwiseInverse();
     constraint.information = root.asDiagonal() * constraint.information * root.asDiagonal();
+    (is_step[k] ? roles.odometry : roles.candidates).push_back(part.constraint_count());
     part.constraints.push_back(std::move(constraint));
   }
   OptimizeOptions options;
+  options.kernel = RobustKernel::gnc;
   options.initialization = Initialization::file;
-  options.algorithm = OptimizeAlgorithm::levenberg_marquardt;
   try {
-    graph.poses = optimize(part, options).poses;
+    graph.poses = optimize(part, roles, options).poses;
   } catch (const NumericalError&) {
     return;
   }

@@ -42,38 +42,62 @@ void Snapshot<Pose>::prepare(const Pace& pace) {
 template <class Pose>
 void Snapshot<Pose>::explain(const std::vector<const Snapshot*>& others, bool everywhere,
                              const Pace& pace) {
-  prepare(pace);
+  prepare([this, pace](double work) {
+    work_ += work;
+    pace(work);
+  });
   if (!explained()) return judge();
   nearness_of_ = graph_.constraints.size();
-  bool found = false;
-  const auto add = [&](const Explanation<Pose>& next) {
-    const bool better = !found || next.evidence > best_.evidence;
-    if (better) best_ = next;
-    found = true;
-    return better;
-  };
+  climb_->hold_nearness(true);
+  const double prepared = work_;
   for (const Snapshot* other : others) {
-    if (!other->explained()) continue;
-    auto [explanation, findings] = carry(*other);
-    const bool about_the_same = static_cast<double>(graph_.constraints.size()) <
-                                kGrown * static_cast<double>(other->nearness_of_);
-    if (about_the_same) nearness_of_ = other->nearness_of_;
-    climb_->hold_nearness(!everywhere && about_the_same);
-    add(climb_->resume(std::move(explanation), std::move(findings)));
+    if (other->explained()) add(go_on_from(*other, everywhere));
   }
+  if (everywhere || !found_) climb_from_nothing(everywhere);
+  batch_work_.growing += prepared;
   climb_->hold_nearness(false);
-  if (everywhere) {
-    nearness_of_ = graph_.constraints.size();
-    add(climb_->nothing());
-    climb_from_each_start(options_.calibrate, [&](const CovarianceScale& start) {
-      surpassed_ = add(climb_->from(start)) || surpassed_;
-    });
-  } else if (!found) {
-    add(climb_->from({}));
-  }
-  climb_->hold_nearness(!everywhere);
   climb_->stand_at(best_);
   judge();
+}
+
+// As the batch does, which finds the density of near pairs at every assessment.
+template <class Pose>
+void Snapshot<Pose>::climb_from_nothing(bool everywhere) {
+  const double before = work_;
+  const auto nearness_before = assessment().nearness_found();
+  add(everywhere ? climb_->nothing() : climb_->from({}));
+  const auto climb_from = [this](const CovarianceScale& start) {
+    const bool better = add(climb_->from(start));
+    surpassed_ = surpassed_ || better;
+  };
+  if (everywhere) climb_from_each_start(options_.calibrate, climb_from);
+  const auto& nearness = assessment().nearness_found();
+  const double done = (nearness.times - nearness_before.times) * nearness.kWork;
+  batch_work_ = {(nearness.assessments - nearness_before.assessments) * nearness.kWork,
+                 work_ - before - done};
+}
+
+// Whether it is the best so far.
+template <class Pose>
+bool Snapshot<Pose>::add(const Explanation<Pose>& next) {
+  const bool better = !found_ || next.evidence > best_.evidence;
+  if (better) best_ = next;
+  found_ = true;
+  return better;
+}
+
+// What is near by chance is that of the other while edges are about the same.
+template <class Pose>
+Explanation<Pose> Snapshot<Pose>::go_on_from(const Snapshot& other, bool everywhere) {
+  auto [standpoint, findings] = carry(other);
+  const bool about_the_same = static_cast<double>(graph_.constraints.size()) <
+                              kGrown * static_cast<double>(other.nearness_of_);
+  if (about_the_same && !everywhere) {
+    nearness_of_ = other.nearness_of_;
+  } else {
+    findings.near_of.reset();
+  }
+  return climb_->resume(std::move(standpoint), std::move(findings));
 }
 
 // Of loops that came since, none is accepted; scales and weights are those that were learnt.
@@ -88,6 +112,7 @@ typename Snapshot<Pose>::Standpoint Snapshot<Pose>::carry(const Snapshot& other)
       before.shapes == Shapes<Pose>{} ? objective_->stated() : objective_->scaled(before.shapes));
   found.mixture = known.mixture;
   found.near = known.near;
+  found.near_of = known.near_of;
   found.held_scale = before.scale.odometry;
   for (std::size_t k = 0; k < roles_.candidates.size(); ++k) {
     const auto at = std::ranges::lower_bound(other.roles_.candidates, roles_.candidates[k]);

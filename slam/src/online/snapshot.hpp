@@ -24,6 +24,15 @@ class Snapshot {
   /// @throws NumericalError, Cancelled
   void explain(const std::vector<const Snapshot*>& others, bool everywhere, const Pace& pace);
 
+  /// Work that the batch would take on the same graph: on the density of near pairs, which takes
+  /// the same on every graph, and the rest, which grows with loops. Only where explained
+  /// everywhere; of the first loop, what its one climb took.
+  struct BatchWork {
+    double constant = 0.0;
+    double growing = 0.0;
+  };
+  const BatchWork& batch_work() const noexcept { return batch_work_; }
+
   /// False where no loop can be judged by evidence: then there is nothing but graph() and verdicts.
   bool explained() const noexcept { return climb_.has_value(); }
   /// Whether a start led higher than all the others did.
@@ -55,6 +64,9 @@ class Snapshot {
   using Standpoint = std::pair<Explanation<Pose>, typename Assessment<Pose>::Findings>;
 
   void prepare(const Pace& pace);
+  Explanation<Pose> go_on_from(const Snapshot& other, bool everywhere);
+  void climb_from_nothing(bool everywhere);
+  bool add(const Explanation<Pose>& next);
   Standpoint carry(const Snapshot& other) const;
   void carry_layout(const Snapshot& other, typename Estimate<Pose>::Layout& layout) const;
   void judge();
@@ -67,7 +79,10 @@ class Snapshot {
   std::optional<Objective<Pose>> objective_;
   std::optional<Climb<Pose>> climb_;
   Explanation<Pose> best_;
+  bool found_ = false;
   bool surpassed_ = false;
+  double work_ = 0.0;
+  BatchWork batch_work_;
   std::size_t nearness_of_ = 0;  // edges of the graph that the density of near pairs is of
   PruneResult verdicts_;
 };

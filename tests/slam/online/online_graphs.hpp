@@ -15,13 +15,15 @@ namespace isotherm_test {
 using namespace isotherm;
 using namespace isotherm::slam;
 
-/// Half as many false loops as true ones, each behind the odometry that it needs.
+/// Half as many false loops as true ones, or as many times more, each behind the odometry that it
+/// needs.
 template <class Pose>
-PoseGraph<Pose> corrupted_graph(std::uint64_t seed, int poses = 60, int loops = 24) {
+PoseGraph<Pose> corrupted_graph(std::uint64_t seed, int poses = 60, int loops = 24,
+                                double ratio = 0.5) {
   Random random(seed);
   const auto made = random_loop_graph<Pose>(random, poses, loops, 1.0);
   CorruptOptions options;
-  options.ratio = 0.5;
+  options.ratio = ratio;
   options.seed = seed;
   auto graph = corrupt(made.graph, made.truth, options).graph;
   graph.poses.clear();

@@ -23,9 +23,10 @@ class OnlineEngine;
 struct OnlineOptions {
   /// Of the objective, the same as the batch's.
   ConsensusOptions consensus;
-  /// Work on earlier verdicts while edges come, in times of the batch's on the same graph; in
-  /// [0, 100]. With 0 they are looked at again only when there are twice as many loops.
-  double effort = 1.0;
+  /// Work while edges come, in times of one batch's on what has come; in [0, 100]. A third of it
+  /// may follow up on new loops, the rest searches the whole. With 0 that is done only where there
+  /// are four times as many loops. finish() comes on top.
+  double effort = 3.0;
 
   /// @throws InvalidArgument naming the field that is out of range.
   void validate() const;
@@ -35,7 +36,7 @@ template <class Options, class Visitor>
 requires std::same_as<std::remove_const_t<Options>, OnlineOptions>
 void visit_fields(Options& options, Visitor&& visit) {
   visit_fields(options.consensus, visit);
-  visit("effort", options.effort, "work on earlier verdicts meanwhile, in times of one batch's",
+  visit("effort", options.effort, "work while edges come, in times of one batch's on what has come",
         closed(0, 100));
 }
 
@@ -92,7 +93,8 @@ class OnlineConsensus {
   spectral::EdgeVerdicts verdicts() const;
 
   /// All vertices and edges so far; where there are loops, with the current estimate as poses,
-  /// which takes one solution of the map where the search has not seen all loops yet.
+  /// which takes a few solutions of the map where the search has not seen all loops yet: without
+  /// those that all others contradict, whatever was thought of them when they came.
   PoseGraph<Pose> graph() const;
 
   /// The same as added, without an estimate: what a file of the same edges holds.

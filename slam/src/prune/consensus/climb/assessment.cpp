@@ -15,10 +15,16 @@ constexpr double kSameWeight = 0.05;  // of its log
 constexpr double kHopeless = 50.0;  // log odds against, by a bound, beyond which none is solved for
 constexpr int kFixedPointSteps = 30;
 
-// Covariances, in times of a factorisation, and the density of near pairs, in links that are
-// linearised in that time (measured).
+// Covariances, in times of a factorisation (measured).
 constexpr double kCovarianceWork = 2.0;
-constexpr double kNearnessWork = 2500.0;
+
+// Times as many accepted loops, a few more aside, until the density of near pairs is found anew.
+constexpr double kOtherMap = 1.1;
+constexpr std::size_t kFewMore = 5;
+
+bool is_much_more(std::size_t many, std::size_t few) {
+  return static_cast<double>(many) > kOtherMap * static_cast<double>(few + kFewMore);
+}
 
 }  // namespace
 
@@ -36,6 +42,7 @@ template <class Pose>
 void Assessment<Pose>::start_over() {
   estimate_.restore(odometry_);
   found_.held.clear();
+  found_.near_of.reset();
 }
 
 template <class Pose>
@@ -50,17 +57,28 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   rescale(now.shapes);
   found_.mixture = expected_mixture(now.scale.loops, now.shares);
   find_peak(now);
-  if (!nearness_held_) found_.near = objective_.near(estimate_.poses());
+  find_nearness(now);
   if (ceiling(now) < least) return false;
   predict(now);
   weigh(now);
   add_prior(now);
   now.layout = estimate_.layout();
-  if (pace_) {
-    pace_(kCovarianceWork * estimate_.work() + (nearness_held_ ? 0.0 : kNearnessWork));
-  }
+  if (pace_) pace_(kCovarianceWork * estimate_.work());
   now.evidence = evidence(now);
   return true;
+}
+
+template <class Pose>
+void Assessment<Pose>::find_nearness(const Explanation<Pose>& now) {
+  nearness_found_.assessments += 1.0;
+  const auto accepted = static_cast<std::size_t>(std::ranges::count(now.accepted, true));
+  const auto before = found_.near_of;
+  const bool same = before && !is_much_more(accepted, *before) && !is_much_more(*before, accepted);
+  if (nearness_held_ && same) return;
+  found_.near = objective_.near(estimate_.poses());
+  found_.near_of = accepted;
+  nearness_found_.times += 1.0;
+  if (pace_) pace_(NearnessFound::kWork);
 }
 
 // Of the evidence, before redundancy is known: the more there is, the narrower is the peak.

@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "prune/consensus/objective/objective.hpp"
@@ -22,9 +23,19 @@ class Assessment {
   /// Back to the layout of odometry.
   void start_over();
 
-  /// Whether the density of near pairs stays what it was found to be, whatever the layout: that
-  /// changes slowly, and takes longest on small graphs.
+  /// Whether the density of near pairs is found anew only where the loops that are accepted are
+  /// many more or fewer: it changes slowly, and takes longest on small graphs. Many loops may draw
+  /// the map together.
   void hold_nearness(bool held) { nearness_held_ = held; }
+
+  /// How often that was found so far, of how many assessments, and the work of each time, as pace
+  /// is told, which is the same on every graph.
+  struct NearnessFound {
+    double times = 0.0;
+    double assessments = 0.0;
+    static constexpr double kWork = 2500.0;  // links that are linearised in that time (measured)
+  };
+  const NearnessFound& nearness_found() const noexcept { return nearness_found_; }
 
   /// Sets the weights, the layout and the evidence of `now`, or gives up where that cannot reach
   /// `least`: whether it went to the end.
@@ -37,7 +48,8 @@ class Assessment {
     std::shared_ptr<const ScaledGraph<Pose>> graph;  // scaled by those
     ScaleMixture mixture;
     typename Objective<Pose>::NearByClass near{};
-    std::vector<Matrix> covariances;  // of T_a^-1 T_b, one a loop; with it where it is accepted
+    std::optional<std::size_t> near_of;  // loops that were accepted then; none: to be found anew
+    std::vector<Matrix> covariances;     // of T_a^-1 T_b, one a loop; with it where it is accepted
     // Factors on the information of the loops that the covariances are given; none where empty.
     std::vector<double> held;
     double held_scale = 0.0;  // of odometry
@@ -66,6 +78,7 @@ class Assessment {
  private:
   void rescale(const Shapes<Pose>& shapes);
   void find_peak(Explanation<Pose>& now);
+  void find_nearness(const Explanation<Pose>& now);
   double ceiling(Explanation<Pose>& now) const;
   double evidence(const Explanation<Pose>& now) const;
   bool reweigh(Explanation<Pose>& now);
@@ -86,6 +99,7 @@ class Assessment {
   Estimate<Pose> estimate_;
   typename Estimate<Pose>::Layout odometry_;
   bool nearness_held_ = false;
+  NearnessFound nearness_found_;
 };
 
 extern template class Assessment<Pose2>;

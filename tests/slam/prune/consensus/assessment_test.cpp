@@ -1,0 +1,63 @@
+#include "prune/consensus/climb/assessment.hpp"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "isotherm/base/random.hpp"
+#include "slam/loop_graph.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+using isotherm_test::random_loop_graph;
+
+template <class Pose>
+class AssessmentOf : public testing::Test {
+ protected:
+  static constexpr int kLoops = 40;
+
+  /// How often the density of near pairs is found while the loops that are accepted, the first
+  /// ones, come to be as many as `counts` say.
+  double times_found(const std::vector<int>& counts, bool held) {
+    Assessment<Pose> assessment(objective_);
+    assessment.hold_nearness(held);
+    for (const int count : counts) {
+      Explanation<Pose> now{.accepted = std::vector<bool>(kLoops, false)};
+      std::fill_n(now.accepted.begin(), count, true);
+      now.weights.assign(kLoops, 1.0);
+      assessment.assess(now);
+      last_ = assessment.findings().near;
+    }
+    EXPECT_EQ(assessment.nearness_found().assessments, static_cast<double>(counts.size()));
+    return assessment.nearness_found().times;
+  }
+
+  Random random_{3};
+  PoseGraph<Pose> graph_ = random_loop_graph<Pose>(random_, 80, kLoops, 1.0).graph;
+  Objective<Pose> objective_{graph_, edge_roles(graph_), 20};
+  typename Objective<Pose>::NearByClass last_{};
+};
+
+using Poses = testing::Types<Pose2, Pose3>;
+TYPED_TEST_SUITE(AssessmentOf, Poses);
+
+TYPED_TEST(AssessmentOf, FindsWhatIsNearEveryTimeUnlessItIsHeld) {
+  EXPECT_EQ(this->times_found({20, 21, 20}, false), 3.0);
+  EXPECT_EQ(this->times_found({20, 21, 20}, true), 1.0);
+}
+
+TYPED_TEST(AssessmentOf, FindsWhatIsNearAnewOfManyMoreOrFewerLoops) {
+  EXPECT_EQ(this->times_found({0, 5, 40}, true), 2.0);
+  EXPECT_EQ(this->times_found({40, 36, 10}, true), 2.0);
+}
+
+TYPED_TEST(AssessmentOf, KnowsWhatIsNearAtTheSameLoopsAlike) {
+  this->times_found({0, 40}, true);
+  const auto held = this->last_;
+  this->times_found({0, 40}, false);
+  EXPECT_EQ(held, this->last_);
+}
+
+}  // namespace
+}  // namespace isotherm::slam::detail
