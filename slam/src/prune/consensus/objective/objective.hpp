@@ -61,8 +61,8 @@ class Objective {
  public:
   using NearByClass = std::array<double, kProposalClasses>;
 
-  /// `roles` must outlive this object. Loops whose ends lie within `window` vertices of
-  /// another's can be in one run. Without `calibrate` the scales are known.
+  /// Loops whose ends lie within `window` vertices of another's can be in one run. Without
+  /// `calibrate` the scales are known.
   Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles, Index window,
             bool calibrate = true);
 
@@ -113,7 +113,7 @@ class Objective {
                    const Estimate<Pose>& estimate) const;
 
   PoseGraph<Pose> graph_;  // in_own_frames()
-  const EdgeRoles& roles_;
+  EdgeRoles roles_;
   ScaledGraph<Pose> stated_;
   NearDensity<Pose> near_;
   Runs<Pose> runs_;
