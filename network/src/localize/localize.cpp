@@ -191,7 +191,7 @@ class Localization {
       verdict.from = static_cast<std::uint64_t>(problem_.ranges[k].from);
       verdict.to = static_cast<std::uint64_t>(problem_.ranges[k].to);
       const auto& range = problem_.ranges[k];
-      if (!placement_.placed[range.from] || !placement_.placed[range.to]) {
+      if (!detail::are_placed(placement_, range.from, range.to)) {
         const bool trusted = trusted_[problem_.pair_of[k]];
         verdict.verdict = trusted ? Verdict::ambiguous : Verdict::prune;
         verdict.stage = trusted ? "no position" : "heat";
@@ -258,8 +258,7 @@ class Localization {
       if (!problem_.sigma_given[k]) result_.sigma = problem_.sigmas[k];
       const auto& range = problem_.ranges[k];
       if (!use_[k] || (problem_.is_anchor[range.from] && problem_.is_anchor[range.to])) continue;
-      const double length =
-          (placement_.positions.col(range.from) - placement_.positions.col(range.to)).norm();
+      const double length = detail::distance_of(placement_, range.from, range.to);
       result_.chi2 += std::pow((length - range.distance) / problem_.sigmas[k], 2);
       ++kept;
     }

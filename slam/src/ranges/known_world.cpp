@@ -128,7 +128,7 @@ RangeProblem<Pose> problem_of(const KnownWorld<Pose>& world, Bodies& bodies) {
   problem.gauge = gauge_of(world, bodies);
   problem.longest = world.longest;
   // Between what noise hides and the longest range.
-  problem.typical_excess = std::sqrt(world.typical_sigma * world.longest);
+  problem.typical_excess = network::typical_excess(world.typical_sigma, world.longest);
   for (const auto& step : world.graph.steps) {
     if (!bodies.active[step.from] || !bodies.active[step.to]) continue;
     problem.steps.constraints.push_back(step);

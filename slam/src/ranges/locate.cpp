@@ -60,14 +60,9 @@ class Location {
   detail::RangeModel first_model() const {
     detail::RangeModel model;
     model.longest = world_.longest;
-    model.excess = std::sqrt(world_.longest * world_.typical_sigma);
-    if (options_.bias == ModelChoice::no) leave_out_bias(model);
+    model.excess = network::typical_excess(world_.typical_sigma, world_.longest);
+    if (options_.bias == ModelChoice::no) network::leave_out_too_long(model);
     return model;
-  }
-
-  static void leave_out_bias(detail::RangeModel& model) {
-    model.share[network::kCorrect] += model.share[network::kTooLong];
-    model.share[network::kTooLong] = 0.0;
   }
 
   detail::GrownMap<Pose> grow(const Start& start) const {
@@ -137,7 +132,7 @@ class Location {
       auto without = problem_;
       without.too_long = false;
       auto at = map_.estimate;
-      leave_out_bias(at.model);
+      network::leave_out_too_long(at.model);
       keep_if_likelier(without, std::move(at));
     }
     if (options_.calibrate == ModelChoice::automatic) {

@@ -90,6 +90,13 @@ double most_likely_log_mean(double count, double sum, double centre) {
 
 }  // namespace
 
+double typical_excess(double sigma, double longest) { return std::sqrt(sigma * longest); }
+
+void leave_out_too_long(RangeMixture& model) {
+  model.share[kCorrect] += model.share[kTooLong];
+  model.share[kTooLong] = 0.0;
+}
+
 RangeLoss range_loss(const RangeMixture& model, double error, double variance) {
   const double sigma = std::sqrt(variance);
   ByKind cost{};

@@ -102,14 +102,16 @@ Index placed_count(const Placement& placement) {
   return static_cast<Index>(std::count(placement.placed.begin(), placement.placed.end(), true));
 }
 
-bool is_placed(const Placement& placement, const RangePair& pair) {
-  return placement.placed[pair.from] && placement.placed[pair.to];
+bool are_placed(const Placement& placement, Index a, Index b) {
+  return placement.placed[a] && placement.placed[b];
+}
+
+double distance_of(const Placement& placement, Index a, Index b) {
+  return (placement.positions.col(a) - placement.positions.col(b)).norm();
 }
 
 double deviation(const Placement& placement, const RangePair& pair) {
-  const double length =
-      (placement.positions.col(pair.from) - placement.positions.col(pair.to)).norm();
-  return (length - pair.distance) / pair.sigma;
+  return (distance_of(placement, pair.from, pair.to) - pair.distance) / pair.sigma;
 }
 
 double squared_deviation(const Placement& placement, const RangePair& pair) {

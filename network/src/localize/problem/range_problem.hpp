@@ -47,8 +47,14 @@ Placement place_nodes(const RangeProblem& problem, const std::vector<Index>& nod
 /// How many nodes have a place.
 Index placed_count(const Placement& placement);
 
-/// Whether both ends have one.
-bool is_placed(const Placement& placement, const RangePair& pair);
+/// Whether both have one.
+bool are_placed(const Placement& placement, Index a, Index b);
+inline bool is_placed(const Placement& placement, const RangePair& pair) {
+  return are_placed(placement, pair.from, pair.to);
+}
+
+/// Between two placed nodes.
+double distance_of(const Placement& placement, Index a, Index b);
 
 /// (distance between the places of a pair - its range) / sigma.
 double deviation(const Placement& placement, const RangePair& pair);

@@ -104,13 +104,12 @@ bool RangeInformation::between_unknowns(std::size_t k) const {
 }
 
 bool RangeInformation::between_placed(std::size_t k) const {
-  return placement_.placed[problem_.ranges[k].from] && placement_.placed[problem_.ranges[k].to];
+  return are_placed(placement_, problem_.ranges[k].from, problem_.ranges[k].to);
 }
 
 double RangeInformation::residual(std::size_t k) const {
   const auto& range = problem_.ranges[k];
-  return range.distance -
-         (placement_.positions.col(range.from) - placement_.positions.col(range.to)).norm();
+  return range.distance - distance_of(placement_, range.from, range.to);
 }
 
 double RangeInformation::information(std::size_t k) const {

@@ -166,10 +166,6 @@ RefineOutcome refine(const RangeProblem& problem, const std::vector<Spring>& spr
   return {options.max_iterations, false};
 }
 
-double typical_excess(const RangeProblem& problem, double longest) {
-  return std::sqrt(problem.typical_sigma * longest);
-}
-
 namespace {
 
 // Beyond so many deviations a range pulls as hard wherever its ends are, so that no step needs to
@@ -181,12 +177,11 @@ std::vector<Spring> all_springs(const RangeProblem& problem, const Placement& pl
   std::vector<Spring> springs;
   for (std::size_t k = 0; k < problem.ranges.size(); ++k) {
     const auto& range = problem.ranges[k];
-    if (!placement.placed[range.from] || !placement.placed[range.to]) continue;
+    if (!are_placed(placement, range.from, range.to)) continue;
     if (problem.is_anchor[range.from] && problem.is_anchor[range.to]) continue;
     Spring spring{range.from, range.to, range.distance, problem.sigmas[k]};
-    const double length =
-        (placement.positions.col(range.from) - placement.positions.col(range.to)).norm();
-    spring.couples = std::abs(length - range.distance) < kCouples * spring.sigma;
+    const double error = distance_of(placement, range.from, range.to) - range.distance;
+    spring.couples = std::abs(error) < kCouples * spring.sigma;
     springs.push_back(spring);
   }
   return springs;
@@ -196,10 +191,8 @@ RangeStatistics statistics_of(const RangeMixture& model, const std::vector<Sprin
                               const Placement& placement) {
   RangeStatistics statistics;
   for (const auto& spring : springs) {
-    const double length =
-        (placement.positions.col(spring.from) - placement.positions.col(spring.to)).norm();
-    statistics.add(
-        range_moments(model, spring.distance - length, std::pow(model.sigma(spring.sigma), 2)));
+    const double error = spring.distance - distance_of(placement, spring.from, spring.to);
+    statistics.add(range_moments(model, error, std::pow(model.sigma(spring.sigma), 2)));
   }
   return statistics;
 }
@@ -217,7 +210,7 @@ RefineOutcome refine_mixture(const RangeProblem& problem, bool too_long, int max
   };
   SparseSystem system(problem, springs, cost_of, placement);
   if (system.unknowns() == 0) return {};
-  const double excess = typical_excess(problem, model.longest);
+  const double excess = typical_excess(problem.typical_sigma, model.longest);
   double damping = 1e-6;
   for (int k = 0; k < max_iterations; ++k) {
     const Progress done{"kinds of ranges", static_cast<std::uint64_t>(k),

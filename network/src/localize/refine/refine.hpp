@@ -55,8 +55,4 @@ RefineOutcome refine_mixture(const RangeProblem& problem, bool too_long, int max
                              const ProgressCallback& progress, RangeMixture& model,
                              Placement& placement);
 
-/// Excess to begin with of ranges that are too long: between what noise hides and the longest
-/// range.
-double typical_excess(const RangeProblem& problem, double longest);
-
 }  // namespace isotherm::network::detail

@@ -13,9 +13,8 @@ constexpr double kReach = 4.0;  // widths beyond which a range has no say
 
 double deviation_of(const RangeProblem& problem, const Placement& placement, std::size_t k) {
   const auto& range = problem.ranges[k];
-  const double length =
-      (placement.positions.col(range.from) - placement.positions.col(range.to)).norm();
-  return std::abs(length - range.distance) / problem.sigmas[k];
+  return std::abs(distance_of(placement, range.from, range.to) - range.distance) /
+         problem.sigmas[k];
 }
 
 bool both_placed(const RangeProblem& problem, const Placement& placement, std::size_t k) {

@@ -20,23 +20,19 @@ struct Residual {
 Residual residual_of(const RangeProblem& problem, const Placement& placement,
                      const RangeMixture& model, std::size_t k) {
   const auto& range = problem.ranges[k];
-  const double length =
-      (placement.positions.col(range.from) - placement.positions.col(range.to)).norm();
-  return {range.distance - length, std::pow(model.sigma(problem.sigmas[k]), 2)};
+  return {range.distance - distance_of(placement, range.from, range.to),
+          std::pow(model.sigma(problem.sigmas[k]), 2)};
 }
 
 bool between_placed(const RangeProblem& problem, const Placement& placement, std::size_t k) {
-  return placement.placed[problem.ranges[k].from] && placement.placed[problem.ranges[k].to];
+  return are_placed(placement, problem.ranges[k].from, problem.ranges[k].to);
 }
 
 RangeMixture first_model(const RangeProblem& problem, bool too_long) {
   RangeMixture model;
   for (const auto& range : problem.ranges) model.longest = std::max(model.longest, range.distance);
-  model.excess = typical_excess(problem, model.longest);
-  if (!too_long) {
-    model.share[kCorrect] += model.share[kTooLong];
-    model.share[kTooLong] = 0.0;
-  }
+  model.excess = typical_excess(problem.typical_sigma, model.longest);
+  if (!too_long) leave_out_too_long(model);
   return model;
 }
 
@@ -44,8 +40,9 @@ RangeMixture first_model(const RangeProblem& problem, bool too_long) {
 void assess(const RangeProblem& problem, const Placement& placement, WeighedRanges& weighed) {
   weighed.weighs.assign(problem.ranges.size(), false);
   weighed.information.assign(problem.ranges.size(), 0.0);
-  double cost = log_prior_cost(weighed.model, typical_excess(problem, weighed.model.longest),
-                               weighed.too_long);
+  double cost =
+      log_prior_cost(weighed.model, typical_excess(problem.typical_sigma, weighed.model.longest),
+                     weighed.too_long);
   for (std::size_t k = 0; k < problem.ranges.size(); ++k) {
     if (!between_placed(problem, placement, k)) continue;
     const auto [error, noise] = residual_of(problem, placement, weighed.model, k);

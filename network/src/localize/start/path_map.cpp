@@ -103,8 +103,7 @@ void match_size(const RangeProblem& problem, const std::vector<bool>& trusted,
   for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
     const auto& pair = problem.pairs[p];
     if (!trusted[p] || !is_placed(placement, pair)) continue;
-    const double length =
-        (placement.positions.col(pair.from) - placement.positions.col(pair.to)).norm();
+    const double length = distance_of(placement, pair.from, pair.to);
     if (length > 0.0) ratios.push_back(pair.distance / length);
   }
   if (!ratios.empty()) placement.positions *= lower_median(std::move(ratios));

@@ -26,6 +26,13 @@ struct RangeMixture {
   double sigma(double stated) const { return scale * stated; }
 };
 
+/// Excess to begin with of ranges that are too long: between the noise, of `sigma`, and the longest
+/// range.
+double typical_excess(double sigma, double longest);
+
+/// Counts the ranges that are too long among the correct ones.
+void leave_out_too_long(RangeMixture& model);
+
 /// A range's -log density at an error (measured less predicted), and what a step needs.
 struct RangeLoss {
   double cost = 0.0;       ///< -log density, all kinds

@@ -1,7 +1,6 @@
 #include "prune/consensus/estimate/odometry_component.hpp"
 
 #include "isotherm/slam/graph/information.hpp"
-#include "isotherm/slam/graph/odometry.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -34,13 +33,13 @@ void add_edge(const StepError<Pose>& step, const typename Pose::Matrix& carry,
 }  // namespace
 
 template <class Pose>
-OdometryComponent<Pose> odometry_component(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+OdometryComponent<Pose> odometry_component(const PoseGraph<Pose>& graph,
+                                           const std::vector<std::optional<Index>>& edges,
                                            const typename Pose::Tangent& shape, double scale,
                                            const ReducedGraph<Pose>& reduced,
                                            const Estimate<Pose>& estimate,
                                            std::span<const typename Pose::Matrix> covariances) {
   using Matrix = typename Pose::Matrix;
-  const auto edges = chain_edges(graph, roles);
   const typename Pose::Tangent root = shape.cwiseSqrt();
   OdometryComponent<Pose> sum;
   for (std::size_t k = 0; k < reduced.steps.size(); ++k) {
@@ -66,15 +65,11 @@ OdometryComponent<Pose> odometry_component(const PoseGraph<Pose>& graph, const E
   return sum;
 }
 
-template OdometryComponent<Pose2> odometry_component(const PoseGraph<Pose2>&, const EdgeRoles&,
-                                                     const Pose2::Tangent&, double,
-                                                     const ReducedGraph<Pose2>&,
-                                                     const Estimate<Pose2>&,
-                                                     std::span<const Pose2::Matrix>);
-template OdometryComponent<Pose3> odometry_component(const PoseGraph<Pose3>&, const EdgeRoles&,
-                                                     const Pose3::Tangent&, double,
-                                                     const ReducedGraph<Pose3>&,
-                                                     const Estimate<Pose3>&,
-                                                     std::span<const Pose3::Matrix>);
+template OdometryComponent<Pose2> odometry_component(
+    const PoseGraph<Pose2>&, const std::vector<std::optional<Index>>&, const Pose2::Tangent&,
+    double, const ReducedGraph<Pose2>&, const Estimate<Pose2>&, std::span<const Pose2::Matrix>);
+template OdometryComponent<Pose3> odometry_component(
+    const PoseGraph<Pose3>&, const std::vector<std::optional<Index>>&, const Pose3::Tangent&,
+    double, const ReducedGraph<Pose3>&, const Estimate<Pose3>&, std::span<const Pose3::Matrix>);
 
 }  // namespace isotherm::slam::detail

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "prune/consensus/estimate/estimate.hpp"
 
@@ -15,13 +17,14 @@ struct OdometryComponent {
   typename Pose::Tangent redundancy = Pose::Tangent::Zero();  ///< numbers left over
 };
 
-/// Of `graph` as reduced with the factors `shape` on its variances, at the last update of
-/// `estimate`, where the factor on all of them was `scale`. Many edges are contracted into a step,
-/// and an early one's error in heading is one in place at the step's end: each edge has the part of
-/// the step's error that its own covariance explains. `covariances` are those of the steps' ends
-/// (Estimate::relative_covariances). O(edges).
+/// Of `graph`, whose chain_edges() are `edges`, as reduced with the factors `shape` on its
+/// variances, at the last update of `estimate`, where the factor on all of them was `scale`. Many
+/// edges are contracted into a step, and an early one's error in heading is one in place at the
+/// step's end: each edge has the part of the step's error that its own covariance explains.
+/// `covariances` are those of the steps' ends (Estimate::relative_covariances). O(edges).
 template <class Pose>
-OdometryComponent<Pose> odometry_component(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+OdometryComponent<Pose> odometry_component(const PoseGraph<Pose>& graph,
+                                           const std::vector<std::optional<Index>>& edges,
                                            const typename Pose::Tangent& shape, double scale,
                                            const ReducedGraph<Pose>& reduced,
                                            const Estimate<Pose>& estimate,

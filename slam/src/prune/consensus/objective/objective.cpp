@@ -24,6 +24,7 @@ Objective<Pose>::Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                            bool calibrate)
     : graph_(in_own_frames(graph, roles)),
       roles_(roles),
+      chain_edges_(chain_edges(graph_, roles_)),
       stated_(scaled({})),
       near_(stated_.reduced),
       runs_(stated_.reduced, window),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -96,7 +97,7 @@ class Objective {
   OdometryComponent<Pose> odometry(const Explanation<Pose>& explanation,
                                    const ScaledGraph<Pose>& graph, const Estimate<Pose>& estimate,
                                    std::span<const typename Pose::Matrix> covariances) const {
-    return odometry_component(graph_, roles_, explanation.shapes.odometry,
+    return odometry_component(graph_, chain_edges_, explanation.shapes.odometry,
                               explanation.scale.odometry, graph.reduced, estimate, covariances);
   }
 
@@ -114,6 +115,7 @@ class Objective {
 
   PoseGraph<Pose> graph_;  // in_own_frames()
   EdgeRoles roles_;
+  std::vector<std::optional<Index>> chain_edges_;
   ScaledGraph<Pose> stated_;
   NearDensity<Pose> near_;
   Runs<Pose> runs_;
