@@ -1,5 +1,7 @@
 #pragma once
 
+#include <complex>
+
 #include <Eigen/Core>
 
 namespace isotherm::spectral::detail {
@@ -8,9 +10,18 @@ namespace isotherm::spectral::detail {
 /// Eigen's on machines with wide vectors, since the target is chosen when they run.
 using DenseView = Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 using ConstDenseView = Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+using ComplexView = Eigen::Ref<Eigen::MatrixXcd, 0, Eigen::OuterStride<>>;
+using ConstComplexView = Eigen::Ref<const Eigen::MatrixXcd, 0, Eigen::OuterStride<>>;
 
 /// C += scale * A B
 void add_product(DenseView C, double scale, const ConstDenseView& A, const ConstDenseView& B);
+void add_product(ComplexView C, double scale, const ConstComplexView& A, const ConstComplexView& B);
+
+/// C += scale * A' B, where A' is not conjugated.
+void add_transposed_product(DenseView C, double scale, const ConstDenseView& A,
+                            const ConstDenseView& B);
+void add_transposed_product(ComplexView C, double scale, const ConstComplexView& A,
+                            const ConstComplexView& B);
 
 /// X = L^-1 X, of which the lower triangle of L is used.
 void solve_lower(const ConstDenseView& L, DenseView X);

@@ -92,7 +92,10 @@ TEST(PairPlan, HalfSolvesWhereManyPairsMeet) {
   }
   const PairPlan many(tree, across);
   EXPECT_TRUE(many.half_solved(root));
-  EXPECT_EQ(many.meeting_at(root).size(), across.size());
+  std::size_t held = 0;
+  for (Index f = 0; f < tree.front_count(); ++f) held += many.held_by(f).size();
+  EXPECT_GT(held, 0u);
+  EXPECT_EQ(many.meeting_at(root).size() + held, across.size());
 
   const PairPlan one(tree, std::span(across).first(1));
   EXPECT_FALSE(one.half_solved(root));
@@ -101,6 +104,28 @@ TEST(PairPlan, HalfSolvesWhereManyPairsMeet) {
                        tree.meeting(f, tree.front_of(across[0].second)) == f;
     EXPECT_EQ(one.wanted(f), leads);
   }
+}
+
+TEST(PairPlan, FrontsHoldThePairsOfThePattern) {
+  const Index side = 12;
+  const Pairs neighbours = grid(side);
+  Eigen::MatrixXd dense;
+  const BlockCholesky blocks = factor_of(neighbours, side * side, dense);
+  const FrontTree tree(blocks);
+  const PairPlan plan(tree, neighbours);
+  std::size_t held = 0;
+  for (Index f = 0; f < tree.front_count(); ++f) {
+    EXPECT_TRUE(plan.meeting_at(f).empty());
+    for (const std::size_t k : plan.held_by(f)) {
+      const auto [a, b] = neighbours[k];
+      EXPECT_TRUE(tree.front_of(a) == f || tree.front_of(b) == f);
+      EXPECT_EQ(tree.row(f, tree.place(f, a)), tree.position(a));
+      EXPECT_EQ(tree.row(f, tree.place(f, b)), tree.position(b));
+    }
+    held += plan.held_by(f).size();
+  }
+  EXPECT_EQ(held, neighbours.size());
+  EXPECT_EQ(tree.place(0, tree.block(tree.front_count() - 1, 0)), FrontTree::kNone);
 }
 
 TEST(PairPlan, HalfSolvesAParentWithItsChild) {

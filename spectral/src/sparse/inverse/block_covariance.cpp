@@ -50,15 +50,27 @@ class PairInversion {
  private:
   void visit(Index front) {
     const auto L = tree_.values(front);
-    const auto pivots = L.topRows(L.cols()).template triangularView<Eigen::Lower>();
-    const MatrixXd root = pivots.solve(MatrixXd::Identity(L.cols(), L.cols()));
-    const MatrixXd eliminated = root.transpose() * root;
-    const MatrixXd X = L.bottomRows(L.rows() - L.cols()) * root;
+    const Eigen::Index width = L.cols();
+    MatrixXd root = MatrixXd::Identity(width, width);
+    detail::solve_lower(L.topRows(width), root);
+    MatrixXd eliminated = MatrixXd::Zero(width, width);
+    detail::add_transposed_product(eliminated, 1.0, root, root);
+    MatrixXd X = MatrixXd::Zero(L.rows() - width, width);
+    detail::add_product(X, 1.0, L.bottomRows(L.rows() - width), root);
     const Front Z = inverses_.enter(front, {eliminated.data(), X.data()});
     for (Index k = 0; k < tree_.width(front); ++k) {
       diagonal_[tree_.block(front, k)] = Z.template block<Dof, Dof>(k * Dof, k * Dof);
     }
+    read(front, Z);
     if (!plan_.half_solved(front)) answer(front, Z);
+  }
+
+  void read(Index front, const Front& Z) {
+    for (const std::size_t k : plan_.held_by(front)) {
+      const auto [a, b] = pairs_[k];
+      answers_[k].cross =
+          Z.template block<Dof, Dof>(tree_.place(front, a) * Dof, tree_.place(front, b) * Dof);
+    }
   }
 
   void answer(Index front, const Front& Z) {
@@ -83,11 +95,9 @@ class PairInversion {
         cross.noalias() = w.of(a).transpose() * product.template middleCols<Dof>(w.column(b));
       } else if (tree_.front_of(b) != front) {
         cross.noalias() = Z.template middleRows<Dof>(tree_.column_of(a) * Dof) * w.of(b);
-      } else if (tree_.front_of(a) != front) {
+      } else {
         cross.noalias() =
             w.of(a).transpose() * Z.template middleCols<Dof>(tree_.column_of(b) * Dof);
-      } else {
-        cross = Z.template block<Dof, Dof>(tree_.column_of(a) * Dof, tree_.column_of(b) * Dof);
       }
     }
   }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sparse/dense_kernels.hpp"
+
 namespace isotherm::spectral::detail {
 namespace {
 
@@ -35,11 +37,11 @@ void invert_large_front(const EliminatedFront<Scalar>& eliminated, View inverse,
   inverse.topLeftCorner(width, width) = ConstView(eliminated.pivots, width, width);
   if (outside == 0) return;
   const ConstView x(eliminated.x, outside, width);
-  const auto corner = inverse.bottomRightCorner(outside, outside);
-  inverse.bottomLeftCorner(outside, width).noalias() = -corner * x;
-  inverse.topLeftCorner(width, width).noalias() -=
-      x.transpose() * inverse.bottomLeftCorner(outside, width);
-  inverse.topRightCorner(width, outside) = inverse.bottomLeftCorner(outside, width).transpose();
+  auto below = inverse.bottomLeftCorner(outside, width);
+  below.setZero();
+  add_product(below, -1.0, inverse.bottomRightCorner(outside, outside), x);
+  add_transposed_product(inverse.topLeftCorner(width, width), -1.0, x, below);
+  inverse.topRightCorner(width, outside) = below.transpose();
 }
 
 }  // namespace

@@ -50,6 +50,13 @@ void FrontTree::link_fronts() {
   }
 }
 
+Index FrontTree::place(Index front, Index block) const {
+  const auto all = rows(front);
+  const auto found = std::ranges::lower_bound(all, position_[block]);
+  const bool there = found != all.end() && *found == position_[block];
+  return there ? static_cast<Index>(found - all.begin()) : kNone;
+}
+
 FrontTree::Values FrontTree::values(Index front) const {
   const Eigen::Index rows = Eigen::Index{size(front)} * block_size_;
   const Eigen::Index columns = Eigen::Index{width(front)} * block_size_;

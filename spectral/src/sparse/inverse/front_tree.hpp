@@ -43,6 +43,8 @@ class FrontTree {
     return std::span(rows_).subspan(row_start_[front], size(front));
   }
   Index row(Index front, Index k) const { return rows_[row_start_[front] + k]; }
+  /// Which of the front's rows a block is; kNone if none.
+  Index place(Index front, Index block) const;
 
   /// Rows in the parent's front of the rows below this front's own columns.
   std::span<const Index> place_in_parent(Index front) const {

@@ -48,12 +48,11 @@ FrontQueries locate(const FrontTree& tree, std::span<const VertexPair> pairs) {
     FrontQuery query;
   };
   const auto front_place = [&](Index front, Index row) {
-    const auto rows = tree.rows(front);
-    const auto found = std::lower_bound(rows.begin(), rows.end(), row);
-    if (found == rows.end() || *found != row) {
+    const Index place = tree.place(front, row);
+    if (place == FrontTree::kNone) {
       throw InvalidArgument("pairs", "a pair lies outside the pattern of the factor");
     }
-    return static_cast<Index>(found - rows.begin());
+    return place;
   };
 
   std::vector<Located> located;
@@ -61,11 +60,9 @@ FrontQueries locate(const FrontTree& tree, std::span<const VertexPair> pairs) {
     auto [low, high] = pairs[k];
     if (low < 0) std::swap(low, high);
     if (low < 0) continue;
-    low = tree.position(low);
-    if (high >= 0) high = tree.position(high);
-    const bool swapped = high >= 0 && high < low;
+    const bool swapped = high >= 0 && tree.position(high) < tree.position(low);
     if (swapped) std::swap(low, high);
-    const Index front = tree.front_at(low);
+    const Index front = tree.front_of(low);
     const Index second = high < 0 ? FrontTree::kNone : front_place(front, high);
     located.push_back({front, {static_cast<Index>(k), front_place(front, low), second, swapped}});
   }

@@ -2,28 +2,51 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace isotherm::spectral::detail {
 
-PairPlan::PairPlan(const FrontTree& tree, std::span<const Pair> pairs) {
-  sort_pairs_by_meeting(tree, pairs);
+namespace {
+
+// The front that eliminates the first row of a pair, if the other one is among its rows.
+Index holder(const FrontTree& tree, Index a, Index b) {
+  if (a < 0 || b < 0) return FrontTree::kNone;
+  if (tree.position(b) < tree.position(a)) std::swap(a, b);
+  const Index front = tree.front_of(a);
+  return tree.place(front, b) == FrontTree::kNone ? FrontTree::kNone : front;
+}
+
+}  // namespace
+
+PairPlan::PairPlan(const FrontTree& tree, std::span<const Pair> pairs)
+    : held_(held(tree, pairs)), meeting_(meeting(tree, pairs)) {
   find_wanted_fronts(tree, pairs);
   choose_half_solved(tree, pairs);
 }
 
-void PairPlan::sort_pairs_by_meeting(const FrontTree& tree, std::span<const Pair> pairs) {
-  std::vector<Index> meeting(pairs.size(), FrontTree::kNone);
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const auto [a, b] = pairs[k];
-    if (a >= 0 && b >= 0) meeting[k] = tree.meeting(tree.front_of(a), tree.front_of(b));
+PairPlan::ByFront::ByFront(const std::vector<Index>& front_of_pair, Index fronts)
+    : pairs(front_of_pair.size()), first(fronts + 1, 0) {
+  std::iota(pairs.begin(), pairs.end(), std::size_t{0});
+  std::ranges::stable_sort(pairs, {}, [&](std::size_t k) { return front_of_pair[k]; });
+  for (const Index front : front_of_pair) ++first[front + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+}
+
+PairPlan::ByFront PairPlan::held(const FrontTree& tree, std::span<const Pair> pairs) {
+  std::vector<Index> front;
+  front.reserve(pairs.size());
+  for (const auto& [a, b] : pairs) front.push_back(holder(tree, a, b));
+  return {front, tree.front_count()};
+}
+
+PairPlan::ByFront PairPlan::meeting(const FrontTree& tree, std::span<const Pair> pairs) {
+  std::vector<Index> front;
+  front.reserve(pairs.size());
+  for (const auto& [a, b] : pairs) {
+    const bool apart = a >= 0 && b >= 0 && holder(tree, a, b) == FrontTree::kNone;
+    front.push_back(apart ? tree.meeting(tree.front_of(a), tree.front_of(b)) : FrontTree::kNone);
   }
-  by_meeting_.resize(pairs.size());
-  std::iota(by_meeting_.begin(), by_meeting_.end(), std::size_t{0});
-  std::stable_sort(by_meeting_.begin(), by_meeting_.end(),
-                   [&](std::size_t x, std::size_t y) { return meeting[x] < meeting[y]; });
-  first_pair_.assign(tree.front_count() + 1, 0);
-  for (const Index front : meeting) ++first_pair_[front + 1];
-  std::partial_sum(first_pair_.begin(), first_pair_.end(), first_pair_.begin());
+  return {front, tree.front_count()};
 }
 
 void PairPlan::find_wanted_fronts(const FrontTree& tree, std::span<const Pair> pairs) {

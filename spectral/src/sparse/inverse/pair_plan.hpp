@@ -8,8 +8,8 @@
 
 namespace isotherm::spectral::detail {
 
-/// Which fronts lead to some pairs of block rows, where the branches of each pair meet,
-/// and how the blocks of Z = A^-1 between them are best found there.
+/// Which fronts lead to some pairs of block rows, and where and how the block of Z = A^-1
+/// between the two of each is best found.
 class PairPlan {
  public:
   using Pair = std::pair<Index, Index>;
@@ -20,10 +20,12 @@ class PairPlan {
   /// Whether a front is on the way from a root to a row that is asked for.
   bool wanted(Index front) const { return wanted_[front]; }
 
-  /// Numbers of the pairs whose branches meet at a front, ascending.
-  std::span<const std::size_t> meeting_at(Index front) const {
-    return {by_meeting_.begin() + first_pair_[front], by_meeting_.begin() + first_pair_[front + 1]};
-  }
+  /// Numbers of the pairs that a front holds, being the first to eliminate one of the two:
+  /// all that are in the pattern of L. Ascending.
+  std::span<const std::size_t> held_by(Index front) const { return held_.at(front); }
+
+  /// Numbers of the other pairs, by the front where their branches meet, ascending.
+  std::span<const std::size_t> meeting_at(Index front) const { return meeting_.at(front); }
 
   /// Whether the pairs that meet at a front are answered by rows of L^-1, of the front
   /// and of those above it, which all are half-solved then. Where many pairs meet, that
@@ -31,12 +33,24 @@ class PairPlan {
   bool half_solved(Index front) const { return half_solved_[front]; }
 
  private:
-  void sort_pairs_by_meeting(const FrontTree& tree, std::span<const Pair> pairs);
+  /// Numbers of pairs, by front.
+  struct ByFront {
+    ByFront(const std::vector<Index>& front_of_pair, Index fronts);
+    std::span<const std::size_t> at(Index front) const {
+      return {pairs.begin() + first[front], pairs.begin() + first[front + 1]};
+    }
+
+    std::vector<std::size_t> pairs;
+    std::vector<std::size_t> first;  // one a front and an end
+  };
+
+  static ByFront held(const FrontTree& tree, std::span<const Pair> pairs);
+  static ByFront meeting(const FrontTree& tree, std::span<const Pair> pairs);
   void find_wanted_fronts(const FrontTree& tree, std::span<const Pair> pairs);
   void choose_half_solved(const FrontTree& tree, std::span<const Pair> pairs);
 
-  std::vector<std::size_t> by_meeting_;  // pairs, by the front where their branches meet
-  std::vector<std::size_t> first_pair_;  // places in by_meeting_, one a front and an end
+  ByFront held_;
+  ByFront meeting_;
   std::vector<bool> wanted_;
   std::vector<bool> half_solved_;
 };
