@@ -24,6 +24,7 @@ template <class Pose>
 void Estimate<Pose>::use(const ReducedGraph<Pose>& graph) {
   graph_ = &graph;
   equations_.reset();
+  move_.resize(0);
 }
 
 template <class Pose>
@@ -32,6 +33,7 @@ void Estimate<Pose>::lay_out(const std::vector<bool>& accepted) {
   const PoseGraph<Pose> used = used_links(accepted);
   join_components(used);
   equations_.emplace(used, spectral::FactorForm::supernodal);
+  move_.resize(0);
   component_ = equations_->gauge().component;
   laid_out_for_ = accepted;
 }
@@ -44,6 +46,7 @@ void Estimate<Pose>::linearize(const CovarianceScale& scale) {
     if (link >= step_count && !weights_.empty()) weight *= weights_[used_loops_[link - step_count]];
     return EdgeScaling{weight, weight, 0.0};
   };
+  linearized_ = poses_;
   equations_->linearize(poses_, scaling);
   if (!equations_->hessian().factorise()) {
     throw NumericalError("consensus", "the normal equations are not positive definite");
@@ -61,9 +64,9 @@ double Estimate<Pose>::work() const {
 // step in deviations.
 template <class Pose>
 bool Estimate<Pose>::step() {
-  const Eigen::VectorXd move = equations_->hessian().solve(-equations_->gradient());
-  const double decrement = -move.dot(equations_->gradient());
-  equations_->retract(move, poses_);
+  move_ = equations_->hessian().solve(-equations_->gradient());
+  const double decrement = -move_.dot(equations_->gradient());
+  equations_->retract(move_, poses_);
   return decrement < kSettled * kSettled * static_cast<double>(1 + used_loops_.size());
 }
 
@@ -79,10 +82,11 @@ void Estimate<Pose>::settle(const std::vector<bool>& accepted, const CovarianceS
   lay_out(accepted);
   for (int k = 0; k < max_steps; ++k) {
     linearize(scale);
-    if (step() && !reweigh()) break;
+    if (step() && !reweigh()) return;
   }
   reweigh();
   linearize(scale);
+  step();
 }
 
 template <class Pose>
@@ -90,11 +94,37 @@ void Estimate<Pose>::restore(Layout layout) {
   poses_ = std::move(layout.poses);
   component_ = std::move(layout.component);
   equations_.reset();
+  move_.resize(0);
+}
+
+// Of a residual, by the poses at its ends, where the factor was formed.
+template <class Pose>
+struct Estimate<Pose>::Derivative {
+  Tangent residual;
+  Matrix by_a;
+  Matrix by_b;
+};
+
+// d(T_a^-1 T_b) = -Ad d_a + d_b, with Ad the adjoint of T_b_a.
+template <class Pose>
+typename Estimate<Pose>::Derivative Estimate<Pose>::derivative(const Link<Pose>& link) const {
+  const Pose T_a_b = linearized_[link.a].inverse() * linearized_[link.b];
+  const Tangent r = (link.T_a_b.inverse() * T_a_b).log();
+  const Matrix J = residual_jacobian<Pose>(r);
+  return {r, -J * T_a_b.inverse().adjoint(), J};
 }
 
 template <class Pose>
 typename Pose::Tangent Estimate<Pose>::residual(const Link<Pose>& link) const {
-  return (link.T_a_b.inverse() * (poses_[link.a].inverse() * poses_[link.b])).log();
+  if (move_.size() == 0) {
+    return (link.T_a_b.inverse() * (poses_[link.a].inverse() * poses_[link.b])).log();
+  }
+  auto [r, by_a, by_b] = derivative(link);
+  const Index a = equations_->gauge().variable[link.a];
+  const Index b = equations_->gauge().variable[link.b];
+  if (a >= 0) r += by_a * move_.template segment<Pose::kDof>(a * Pose::kDof);
+  if (b >= 0) r += by_b * move_.template segment<Pose::kDof>(b * Pose::kDof);
+  return r;
 }
 
 template <class Pose>
@@ -102,9 +132,8 @@ std::pair<Index, Index> Estimate<Pose>::parts(const Link<Pose>& loop) const {
   return {component_[loop.a], component_[loop.b]};
 }
 
-// d(T_a^-1 T_b) = -Ad d_a + d_b, with Ad the adjoint of T_b_a.
 template <class Pose>
-std::vector<typename Pose::Matrix> Estimate<Pose>::relative_covariances(
+std::vector<typename Pose::Matrix> Estimate<Pose>::residual_covariances(
     std::span<const Link<Pose>* const> links) const {
   const std::vector<Index>& variable = equations_->gauge().variable;
   std::vector<std::pair<Index, Index>> pairs;
@@ -117,10 +146,10 @@ std::vector<typename Pose::Matrix> Estimate<Pose>::relative_covariances(
   std::vector<Matrix> covariances;
   covariances.reserve(links.size());
   for (std::size_t k = 0; k < links.size(); ++k) {
-    const Matrix adjoint = (poses_[links[k]->b].inverse() * poses_[links[k]->a]).adjoint();
-    const Matrix across = adjoint * known[k].cross;
-    covariances.push_back(adjoint * known[k].first * adjoint.transpose() + known[k].second -
-                          across - across.transpose());
+    const auto [r, by_a, by_b] = derivative(*links[k]);
+    const Matrix across = by_a * known[k].cross * by_b.transpose();
+    covariances.push_back(by_a * known[k].first * by_a.transpose() +
+                          by_b * known[k].second * by_b.transpose() + across + across.transpose());
   }
   return covariances;
 }
