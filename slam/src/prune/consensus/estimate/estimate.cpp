@@ -4,15 +4,63 @@
 
 #include "isotherm/base/error.hpp"
 #include "isotherm/spectral/sparse/block_covariance.hpp"
+#include "isotherm/spectral/sparse/covariance_work.hpp"
+#include "isotherm/spectral/sparse/earlier_factor.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
 
 // Steps below this many standard deviations of the links they move do not matter.
-constexpr double kSettled = 0.1;
+constexpr double kSettled = 0.01;
 
 // Operations of a factorisation that take as long as to linearise one link (measured).
 constexpr double kFlopsOfLink = 5000.0;
+
+// Links that are linearised while one is ordered and analysed (measured).
+constexpr double kLinksOfAnalysis = 10.0;
+
+// An update factorises where it starts and where it ends, mostly.
+constexpr double kFactorisations = 2.0;
+
+using Pairs = std::vector<std::pair<Index, Index>>;
+
+Pairs joined_pairs(const Pairs& pairs, const Gauge& gauge) {
+  Pairs joined;
+  for (const auto& [a, b] : pairs) {
+    if (gauge.component[a] == gauge.component[b]) joined.emplace_back(a, b);
+  }
+  return joined;
+}
+
+// The equations of `used`, with room for the covariances of the `other` pairs where it takes less
+// to fill that in than to find them one by one.
+template <class Pose>
+NormalEquations<Pose> equations_for(const PoseGraph<Pose>& used, const Pairs& other) {
+  const Gauge gauge = fix_gauge(used);
+  const Pairs joined = joined_pairs(other, gauge);
+  Pairs rows;
+  for (const auto& [a, b] : joined) rows.emplace_back(gauge.variable[a], gauge.variable[b]);
+  const auto form = spectral::FactorForm::supernodal;
+  NormalEquations<Pose> sparse(used, gauge, {}, form);
+  const auto work = spectral::covariance_work(sparse.hessian(), rows);
+  const auto links = static_cast<double>(used.constraints.size() + joined.size());
+  if (work.pairs < kLinksOfAnalysis * kFlopsOfLink * links) return sparse;
+  NormalEquations<Pose> roomy(used, gauge, joined, form);
+  const auto filled = spectral::covariance_work(roomy.hessian(), rows);
+  const double more = kFactorisations * (roomy.hessian().flops() - sparse.hessian().flops()) +
+                      filled.fronts - work.fronts;
+  return more < work.pairs ? std::move(roomy) : std::move(sparse);
+}
+
+template <class Pose>
+Pairs other_pairs(const ReducedGraph<Pose>& graph, const std::vector<bool>& accepted) {
+  Pairs pairs;
+  for (std::size_t k = 0; k < accepted.size(); ++k) {
+    const auto& loop = graph.loops[k];
+    if (!accepted[k] && loop.a != loop.b) pairs.emplace_back(loop.a, loop.b);
+  }
+  return pairs;
+}
 
 }  // namespace
 
@@ -23,19 +71,25 @@ Estimate<Pose>::Estimate(const ReducedGraph<Pose>& graph, Pace pace)
 template <class Pose>
 void Estimate<Pose>::use(const ReducedGraph<Pose>& graph) {
   graph_ = &graph;
-  equations_.reset();
+  factorised_ = false;
   move_.resize(0);
 }
 
 template <class Pose>
 void Estimate<Pose>::lay_out(const std::vector<bool>& accepted) {
-  if (equations_ && accepted == laid_out_for_) return;
+  const bool same = equations_ && accepted == laid_out_for_;
+  if (same && factorised_) return;
   const PoseGraph<Pose> used = used_links(accepted);
   join_components(used);
-  equations_.emplace(used, spectral::FactorForm::supernodal);
   move_.resize(0);
+  if (same) {
+    equations_->measure(used);
+  } else {
+    equations_.emplace(equations_for(used, other_pairs(*graph_, accepted)));
+    has_factor_ = false;
+    laid_out_for_ = accepted;
+  }
   component_ = equations_->gauge().component;
-  laid_out_for_ = accepted;
 }
 
 template <class Pose>
@@ -48,10 +102,17 @@ void Estimate<Pose>::linearize(const CovarianceScale& scale) {
   };
   linearized_ = poses_;
   equations_->linearize(poses_, scaling);
+  factorised_ = false;
+  if (pace_) pace_(work());
+}
+
+template <class Pose>
+void Estimate<Pose>::factorise() {
+  has_factor_ = false;
   if (!equations_->hessian().factorise()) {
     throw NumericalError("consensus", "the normal equations are not positive definite");
   }
-  if (pace_) pace_(work());
+  has_factor_ = factorised_ = true;
 }
 
 template <class Pose>
@@ -60,11 +121,22 @@ double Estimate<Pose>::work() const {
          equations_->hessian().flops() / kFlopsOfLink;
 }
 
+// Gauss-Newton's, by the factor of an earlier one where that is near enough.
+template <class Pose>
+Eigen::VectorXd Estimate<Pose>::next_move() {
+  if (has_factor_ && !factorised_) {
+    auto move = spectral::solve_by_earlier_factor(equations_->hessian(), -equations_->gradient());
+    if (move) return *std::move(move);
+  }
+  if (!factorised_) factorise();
+  return equations_->hessian().solve(-equations_->gradient());
+}
+
 // Whether it was one that does not matter. The Newton decrement is the squared length of the
 // step in deviations.
 template <class Pose>
 bool Estimate<Pose>::step() {
-  move_ = equations_->hessian().solve(-equations_->gradient());
+  move_ = next_move();
   const double decrement = -move_.dot(equations_->gradient());
   equations_->retract(move_, poses_);
   return decrement < kSettled * kSettled * static_cast<double>(1 + used_loops_.size());
@@ -82,10 +154,13 @@ void Estimate<Pose>::settle(const std::vector<bool>& accepted, const CovarianceS
   lay_out(accepted);
   for (int k = 0; k < max_steps; ++k) {
     linearize(scale);
-    if (step() && !reweigh()) return;
+    if (!step() || reweigh()) continue;
+    if (factorised_) return;
+    break;
   }
   reweigh();
   linearize(scale);
+  factorise();
   step();
 }
 
@@ -93,7 +168,7 @@ template <class Pose>
 void Estimate<Pose>::restore(Layout layout) {
   poses_ = std::move(layout.poses);
   component_ = std::move(layout.component);
-  equations_.reset();
+  factorised_ = false;
   move_.resize(0);
 }
 

@@ -88,7 +88,7 @@ class Estimate {
   double log_determinant() const { return equations_->hessian().log_determinant(); }
 
   /// Whether nothing has changed since the last update.
-  bool is_factorised() const noexcept { return equations_.has_value(); }
+  bool is_factorised() const noexcept { return factorised_; }
 
   /// What was factorised by the last update; its variables are those of gauge().
   const spectral::BlockCholesky& factor() const { return equations_->hessian(); }
@@ -103,6 +103,8 @@ class Estimate {
  private:
   void lay_out(const std::vector<bool>& accepted);
   void linearize(const CovarianceScale& scale);
+  void factorise();
+  Eigen::VectorXd next_move();
   bool step();
   struct Derivative;
   Derivative derivative(const Link<Pose>& link) const;
@@ -118,7 +120,9 @@ class Estimate {
   std::vector<Index> used_loops_;   // of laid_out_for_, those between different nodes
   std::vector<double> weights_;
   std::optional<NormalEquations<Pose>> equations_;
-  Pace pace_;  // after every factorisation
+  bool has_factor_ = false;  // the equations have one, if of other poses or weights
+  bool factorised_ = false;  // it is of these
+  Pace pace_;                // whenever the equations were set up
 };
 
 /// The part of log(T_measured^-1 T) that changes with T: J with
