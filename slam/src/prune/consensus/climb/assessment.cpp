@@ -11,7 +11,7 @@ namespace isotherm::slam::detail {
 namespace {
 
 constexpr int kMostSteps = 12;        // of Gauss-Newton, weights included
-constexpr double kSameWeight = 0.05;  // of logs, root mean square
+constexpr double kSameWeight = 0.02;  // of logs, root mean square
 constexpr double kHopeless = 50.0;  // log odds against, by a bound, beyond which none is solved for
 constexpr int kFixedPointSteps = 30;
 

@@ -61,7 +61,7 @@ void report(const std::vector<Explanation<Pose>>& found, double significance,
     verdict.verdict =
         verdict_of(best.accepted[k], log_odds[k], decisive, many && standings[k].connected());
     verdict.stage = stage_of(best.accepted[k], standings[k].connected());
-    verdict.probability = 1.0 / (1.0 + std::exp(-log_odds[k]));
+    verdict.probability = probability_of(log_odds[k]);
     result.details.push_back({.probability = verdict.probability,
                               .evidence = standings[k].evidence,
                               .chi2 = standings[k].chi2,
