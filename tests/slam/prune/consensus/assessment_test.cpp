@@ -1,5 +1,6 @@
 #include "prune/consensus/climb/assessment.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -79,6 +80,25 @@ TYPED_TEST(AssessmentOf, KnowsWhatIsNearAtTheSameLoopsAlike) {
 
 TYPED_TEST(AssessmentOf, SettlesUntilStandingsDo) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) expect_settled_standings<TypeParam>(seed);
+}
+
+// Weights and shares take turns, each the best given the other.
+TYPED_TEST(AssessmentOf, FindsMoreEvidenceEachTime) {
+  using Pose = TypeParam;
+  for (const double scale :
+       {1.0, 1.0 / 3.0, 1.0 / 30.0}) {  // sharper than stated: loops of all kinds
+    Assessment<Pose> assessment(this->objective_);
+    Explanation<Pose> now{.accepted = std::vector<bool>(this->kLoops, true), .scale = {1.0, scale}};
+    now.shares.loops = {20.0, 10.0, 10.0, 0.0};
+    now.weights.assign(this->kLoops, 1.0);
+    assessment.assess(now);
+    for (int again = 0; again < 9; ++again) {
+      const double before = now.evidence;
+      now.shares = now.found;
+      assessment.assess(now);
+      EXPECT_GT(now.evidence, before - 1e-2) << scale;
+    }
+  }
 }
 
 }  // namespace

@@ -31,18 +31,18 @@ TEST(ScaleMixture, ExpectsWhatWasFoundAndWhatIsKnownBefore) {
 TEST(ScaleShares, GoFromScaleToScaleWithMost) {
   const auto wider = wider_most({{8.0, 4.0, 2.0, 1.0}});
   EXPECT_EQ(wider.shares.loops, (ByScale{12.0, 2.0, 0.0, 1.0}));
-  EXPECT_DOUBLE_EQ(wider.factor, 10.0);
-  const auto widest = wider_most({{1.0, 2.0, 4.0, 1.0}});
+  EXPECT_DOUBLE_EQ(wider.factor, 3.0);
+  const auto widest = all_as_worst({{1.0, 2.0, 4.0, 1.0}});
   EXPECT_EQ(widest.shares.loops, (ByScale{7.0, 0.0, 0.0, 1.0}));
-  EXPECT_DOUBLE_EQ(widest.factor, 100.0);
+  EXPECT_DOUBLE_EQ(widest.factor, 9.0);
   const auto sharper = sharper_most({{8.0, 4.0, 2.0, 1.0}});
-  EXPECT_EQ(sharper.shares.loops, (ByScale{0.0, 8.0, 6.0, 1.0}));
-  EXPECT_DOUBLE_EQ(sharper.factor, 0.1);
+  EXPECT_EQ(sharper.shares.loops, (ByScale{4.0, 4.0, 6.0, 1.0}));
+  EXPECT_DOUBLE_EQ(sharper.factor, 1.0 / 3.0);
 }
 
 TEST(ScaleMixture, GoesAsFarAsTheFileStates) {
   EXPECT_DOUBLE_EQ(expected_mixture(1e-5, {}).relative.back() * 1e-5, 1.0);
-  const auto nearer = expected_mixture(0.1, {{6.0, 2.0, 0.0, 0.0}});
+  const auto nearer = expected_mixture(0.2, {{6.0, 2.0, 0.0, 0.0}});
   EXPECT_NEAR(std::exp(nearer.log_share[2]), 2.0 / 30.0, 1e-12) << "stated counts among the worst";
   EXPECT_EQ(std::exp(nearer.log_share[3]), 0.0);
 }
@@ -64,9 +64,9 @@ TEST(ErrorScale, BoundsTheLogOfTheMixtureTightly) {
 }
 
 TEST(ErrorScale, WeighsALoopLessTheFartherOutItIs) {
-  const auto mixture = expected_mixture(0.01, {{9.0, 0.0, 1.0}});
+  const auto mixture = expected_mixture(0.01, {{99.0, 0.0, 1.0}});
   EXPECT_NEAR(error_scale(mixture, 1.0, 3.0).weight, 1.0, 0.01);
-  EXPECT_NEAR(error_scale(mixture, 30.0, 3.0).weight, 0.1, 0.05);
+  EXPECT_NEAR(error_scale(mixture, 30.0, 3.0).weight, 1.0 / 9.0, 0.05);
   EXPECT_NEAR(error_scale(mixture, 1000.0, 3.0).weight, 0.01, 1e-6);
 }
 

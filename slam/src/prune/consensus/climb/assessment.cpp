@@ -11,7 +11,7 @@ namespace isotherm::slam::detail {
 namespace {
 
 constexpr int kMostSteps = 12;        // of Gauss-Newton, weights included
-constexpr double kSameWeight = 0.02;  // of logs, root mean square
+constexpr double kSameWeight = 0.05;  // of logs, root mean square
 constexpr double kHopeless = 50.0;  // log odds against, by a bound, beyond which none is solved for
 constexpr int kFixedPointSteps = 30;
 
@@ -108,7 +108,9 @@ template <class Pose>
 void Assessment<Pose>::find_peak(Explanation<Pose>& now) {
   weigh_new(now);
   estimate_.weigh_loops(now.weights);
-  estimate_.settle(now.accepted, now.scale, kMostSteps, [&] { return reweigh(now); });
+  bool believed = false;
+  estimate_.settle(now.accepted, now.scale, kMostSteps,
+                   [&] { return reweigh(now, std::exchange(believed, true) ? kSameWeight : 0.0); });
 }
 
 // Loops accepted since the last assessment, by what the others said of them.
@@ -123,14 +125,16 @@ void Assessment<Pose>::weigh_new(Explanation<Pose>& now) {
   }
 }
 
-// Whether weights changed. Else all stay those that the factor was formed with.
+// Whether weights changed by more than `same`. Else all stay those that the factor was formed with,
+// and what was found with them: of other weights the evidence would be off by their change times
+// the squared error, and so it is by the square of the change.
 template <class Pose>
-bool Assessment<Pose>::reweigh(Explanation<Pose>& now) {
+bool Assessment<Pose>::reweigh(Explanation<Pose>& now, double same) {
   double change = 0.0;
   double count = 0.0;
   std::vector<double> weights = now.weights;
-  now.found = {};
-  now.scale_evidence = 0.0;
+  ScaleShares found;
+  double evidence = 0.0;
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
     if (!now.accepted[k]) continue;
     const auto& link = graph().loops[k];
@@ -142,15 +146,15 @@ bool Assessment<Pose>::reweigh(Explanation<Pose>& now) {
     change += step * step;
     count += 1.0;
     weights[k] = scale.weight;
-    now.scale_evidence += scale.evidence;
-    for (std::size_t j = 0; j < kScaleCount; ++j) now.found.loops[j] += scale.probability[j];
+    evidence += scale.evidence;
+    found.add(scale);
   }
-  const bool changed = change > kSameWeight * kSameWeight * count;
-  if (changed) {
-    now.weights = std::move(weights);
-    estimate_.weigh_loops(now.weights);
-  }
-  return changed;
+  if (change <= same * same * count && same > 0.0) return false;
+  now.weights = std::move(weights);
+  now.found = found;
+  now.scale_evidence = evidence;
+  estimate_.weigh_loops(now.weights);
+  return change > 0.0;
 }
 
 // What is expected of the squared length of the error beyond that at the peak, in deviations: P is

@@ -1,5 +1,7 @@
 #include "prune/consensus/estimate/estimate.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "isotherm/base/error.hpp"
@@ -10,8 +12,10 @@
 namespace isotherm::slam::detail {
 namespace {
 
-// Steps below this many standard deviations of the links they move do not matter.
+// Steps below this many standard deviations of the links they move do not matter; what those below
+// one leave is of second order.
 constexpr double kSettled = 0.01;
+constexpr double kNear = 1.0;
 
 // Operations of a factorisation that take as long as to linearise one link (measured).
 constexpr double kFlopsOfLink = 5000.0;
@@ -132,14 +136,14 @@ Eigen::VectorXd Estimate<Pose>::next_move() {
   return equations_->hessian().solve(-equations_->gradient());
 }
 
-// Whether it was one that does not matter. The Newton decrement is the squared length of the
-// step in deviations.
+// Its length in deviations of a link (root mean square): the Newton decrement is the squared
+// length.
 template <class Pose>
-bool Estimate<Pose>::step() {
+double Estimate<Pose>::step() {
   move_ = next_move();
   const double decrement = -move_.dot(equations_->gradient());
   equations_->retract(move_, poses_);
-  return decrement < kSettled * kSettled * static_cast<double>(1 + used_loops_.size());
+  return std::sqrt(std::max(decrement, 0.0) / static_cast<double>(1 + used_loops_.size()));
 }
 
 template <class Pose>
@@ -152,13 +156,16 @@ template <class Pose>
 void Estimate<Pose>::settle(const std::vector<bool>& accepted, const CovarianceScale& scale,
                             int max_steps, const std::function<bool()>& reweigh) {
   lay_out(accepted);
-  for (int k = 0; k < max_steps; ++k) {
+  bool weighed = false;
+  bool settled = false;
+  for (int k = 0; k < max_steps && !settled; ++k) {
     linearize(scale);
-    if (!step() || reweigh()) continue;
-    if (factorised_) return;
-    break;
+    const double length = step();
+    weighed = length < kNear;
+    settled = weighed && !reweigh() && length < kSettled;
   }
-  reweigh();
+  if (settled && factorised_) return;
+  if (!weighed) reweigh();
   linearize(scale);
   factorise();
   step();

@@ -105,7 +105,7 @@ class Estimate {
   void linearize(const CovarianceScale& scale);
   void factorise();
   Eigen::VectorXd next_move();
-  bool step();
+  double step();
   struct Derivative;
   Derivative derivative(const Link<Pose>& link) const;
   PoseGraph<Pose> used_links(const std::vector<bool>& accepted);

@@ -5,18 +5,28 @@
 
 namespace isotherm::slam::detail {
 
-/// How accurate a loop is: as most are, or less, by three or ten times in the error (ten is as much
-/// as is believed of a whole file, kScaleDeviation), or as the file states where that is less
-/// still. Against most first, so that the units of the file's information play next to no part.
+/// How accurate a loop is: as most are, or less, by three or nine times in the variance, or as the
+/// file states where that is less still. Against most first, so that the units of the file's
+/// information play next to no part.
 inline constexpr std::size_t kScaleCount = 4;
 using ByScale = std::array<double, kScaleCount>;
+
+/// What is believed of the scale of one loop.
+struct ErrorScale {
+  ByScale probability{};
+  double weight = 1.0;    ///< mean of 1 / scale: the factor on its information
+  double evidence = 0.0;  ///< mean of log(scale^(-dof/2) / probability)
+};
 
 /// How many loops are of which scale. Of the share of those that are worse than most nothing is
 /// known before, nor which of them is how much so (a Dirichlet distribution).
 struct ScaleShares {
   ByScale loops{};  ///< how many were found of each scale, as expected
 
-  /// log of the probability of finding these.
+  /// One more, or a part of one.
+  void add(const ErrorScale& found, double part = 1.0);
+
+  /// log of the probability of finding these, of parts a lower bound.
   double log_evidence() const;
 };
 
@@ -26,11 +36,14 @@ struct ScaleShift {
   ScaleShares shares;
 };
 
-/// The commoner of the two that are worse.
+/// The next one: those of most are worse, or are called worse.
 ScaleShift wider_most(const ScaleShares& shares);
 
-/// One a step below: all loops are of the scale next to theirs, if there is one.
+/// One a step below, of which half of most are.
 ScaleShift sharper_most(const ScaleShares& shares);
+
+/// The worst, of which all are.
+ScaleShift all_as_worst(const ScaleShares& shares);
 
 /// What is expected of the next loop.
 struct ScaleMixture {
@@ -43,13 +56,6 @@ struct ScaleMixture {
 };
 
 ScaleMixture expected_mixture(double scale, const ScaleShares& shares);
-
-/// What is believed of the scale of one loop.
-struct ErrorScale {
-  ByScale probability{};
-  double weight = 1.0;    ///< mean of 1 / scale: the factor on its information
-  double evidence = 0.0;  ///< mean of log(scale^(-dof/2) / probability)
-};
 
 /// From log densities at each scale, of any common factor.
 ErrorScale error_scale(const ScaleMixture& mixture, const ByScale& log_density, double dof);
