@@ -10,7 +10,8 @@
 namespace isotherm::network::detail {
 namespace {
 
-const Evidence kNoAbsence = {{}, {kGate, kGate}};
+/// That of ranges of which a tenth may have any length up to two, and none is too long.
+const Evidence kNoAbsence = {{.share = {0.9, 0.0, 0.1}, .longest = 2.0}, {}};
 const std::vector<Index> kAbove = {8, 9, 10, 11, 12};
 
 /// Five nodes below and five above three on the x axis, the last of which stands off it by
@@ -41,7 +42,7 @@ struct Map {
         placement{hinged_points(bend), std::vector<bool>(13, true)} {}
 
   std::vector<Fold> folds() const {
-    return find_folds(problem, trusted, kNoAbsence.limits, {.threads = 1}, placement,
+    return find_folds(problem, trusted, kNoAbsence, {.threads = 1}, placement,
                       std::vector<bool>(problem.nodes, true));
   }
 
@@ -92,7 +93,7 @@ TEST(Folds, OneRangeAcrossDoesNotJoinWhatIsOnBothSides) {
   const auto folds = map.folds();
   const auto* fold = Map::fold_of(folds, kAbove);
   ASSERT_NE(fold, nullptr);
-  EXPECT_NEAR(fold->cost, kGate, 1e-9);
+  EXPECT_NEAR(fold->cost, kNoAbsence.cost_of(0.05).anything, 1e-9);
 }
 
 TEST(Folds, AnchorsDoNotTurn) {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "isotherm/network/localize/localize.hpp"
+#include "localize/evidence/evidence.hpp"
 #include "localize/problem/range_problem.hpp"
-#include "localize/problem/small_network.hpp"
 
 namespace isotherm::network::detail {
 
@@ -27,7 +27,7 @@ struct Fold {
 /// count: those near what has changed since the last search. O(pairs * 200 * degree) at most, in
 /// parallel.
 std::vector<Fold> find_folds(const RangeProblem& problem, const std::vector<bool>& trusted,
-                             const Limits& limits, const LocalizeOptions& options,
+                             const Evidence& evidence, const LocalizeOptions& options,
                              const Placement& placement, const std::vector<bool>& among);
 
 /// The nodes near these, where lines are to be searched again when these have moved.

@@ -134,8 +134,7 @@ class Trial {
   double cost() const {
     double sum = 0.0;
     for (const auto& pair : pairs_) {
-      const double r = deviation(local_, pair);
-      sum += std::min(r * r, evidence_.limits(r));
+      sum += evidence_.cost_of(pair.sigma)(deviation(local_, pair));
     }
     for (std::size_t a = 0; a < free_.size(); ++a) {
       const Point place = local_.positions.col(place_of(free_[a]));

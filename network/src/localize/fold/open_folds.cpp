@@ -16,9 +16,9 @@ std::vector<FoldOutcome> gains(const RangeProblem& problem, const std::vector<bo
                                double gate, const LocalizeOptions& options,
                                const Placement& placement, const std::vector<bool>& among) {
   constexpr double kGain = 2.0;  // of the cost, for which a fold is worth opening
-  const auto evidence = learn_evidence(problem, trusted, gate, placement);
+  const auto evidence = learn_evidence(problem, trusted, placement);
   const Crowd crowd(problem, placement, evidence.absence);
-  const auto folds = find_folds(problem, trusted, evidence.limits, options, placement, among);
+  const auto folds = find_folds(problem, trusted, evidence, options, placement, among);
   std::vector<FoldOutcome> outcomes(folds.size());
   parallel_for(static_cast<std::int64_t>(folds.size()), options.threads, options.progress, "folds",
                [&](std::int64_t k) {

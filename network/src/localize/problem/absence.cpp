@@ -91,21 +91,6 @@ class Absence::Counts {
 };
 
 Absence Absence::learn(const RangeProblem& problem, const std::vector<bool>& trusted,
-                       const std::vector<Patch>& patches) {
-  Counts counts(problem, trusted);
-  if (!(counts.end() > 0.0)) return {};
-  for (const auto& patch : patches) {
-    for (std::size_t a = 0; a < patch.members.size(); ++a) {
-      for (std::size_t b = a + 1; b < patch.members.size(); ++b) {
-        counts.add(patch.members[a], patch.members[b],
-                   (patch.positions.col(a) - patch.positions.col(b)).norm());
-      }
-    }
-  }
-  return counts.curve();
-}
-
-Absence Absence::learn(const RangeProblem& problem, const std::vector<bool>& trusted,
                        const Placement& placement) {
   Counts counts(problem, trusted);
   std::vector<Index> nodes;

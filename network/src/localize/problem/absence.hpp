@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "localize/problem/patch.hpp"
 #include "localize/problem/range_problem.hpp"
 
 namespace isotherm::network::detail {
@@ -15,10 +14,6 @@ namespace isotherm::network::detail {
 class Absence {
  public:
   Absence() = default;
-
-  /// From the pairs of nodes within the local maps.
-  static Absence learn(const RangeProblem& problem, const std::vector<bool>& trusted,
-                       const std::vector<Patch>& patches);
 
   /// From the pairs of placed nodes; those between anchors, and those that have a range
   /// which is not trusted, do not count. O(nodes * degree).

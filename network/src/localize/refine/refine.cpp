@@ -7,7 +7,7 @@
 #include "isotherm/base/error.hpp"
 #include "isotherm/spectral/sparse/damped_step.hpp"
 #include "localize/problem/geman_mcclure.hpp"
-#include "localize/problem/small_network.hpp"
+#include "localize/problem/range_problem.hpp"
 
 namespace isotherm::network::detail {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "localize/evidence/evidence.hpp"
 #include "localize/refine/range_information.hpp"
 
 namespace isotherm::network::detail {
@@ -26,14 +27,6 @@ Residual residual_of(const RangeProblem& problem, const Placement& placement,
 
 bool between_placed(const RangeProblem& problem, const Placement& placement, std::size_t k) {
   return are_placed(placement, problem.ranges[k].from, problem.ranges[k].to);
-}
-
-RangeMixture first_model(const RangeProblem& problem, bool too_long) {
-  RangeMixture model;
-  for (const auto& range : problem.ranges) model.longest = std::max(model.longest, range.distance);
-  model.excess = typical_excess(problem.typical_sigma, model.longest);
-  if (!too_long) leave_out_too_long(model);
-  return model;
 }
 
 // Weights and evidence where the nodes are.
@@ -71,8 +64,9 @@ WeighedRanges weigh(const RangeProblem& problem, const LocalizeOptions& options,
 WeighedRanges weigh_ranges(const RangeProblem& problem, const LocalizeOptions& options,
                            Placement& placement) {
   auto place_without = placement;
-  auto with = weigh(problem, options, first_model(problem, true), true, placement);
-  auto without = weigh(problem, options, first_model(problem, false), false, place_without);
+  const auto without_excess = first_mixture(problem, placement, false);
+  auto with = weigh(problem, options, first_mixture(problem, placement, true), true, placement);
+  auto without = weigh(problem, options, without_excess, false, place_without);
   if (with.evidence >= without.evidence) return with;
   placement = std::move(place_without);
   return without;

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "isotherm/network/localize/localize.hpp"
-#include "localize/problem/absence.hpp"
 #include "localize/problem/range_problem.hpp"
 
 namespace isotherm::network::detail {
@@ -18,12 +17,11 @@ enum class Errors { any, too_long };
 /// folds. With `Errors::too_long` ranges shorter than the distance of their ends keep a wide loss.
 /// O(pilots * ranges * log nodes) and the factorisations of the springs. Nothing is placed if
 /// there are too few nodes. @throws Cancelled
-Placement map_by_paths(const RangeProblem& problem, const std::vector<bool>& trusted,
-                       const Absence& absence, Errors errors, double gate,
-                       const LocalizeOptions& options);
+Placement map_by_paths(const RangeProblem& problem, const std::vector<bool>& trusted, Errors errors,
+                       double gate, const LocalizeOptions& options);
 
 /// The springs alone, on the placed nodes of any rough map.
-void unfold(const RangeProblem& problem, const std::vector<bool>& trusted, const Absence& absence,
-            Errors errors, double gate, const LocalizeOptions& options, Placement& placement);
+void unfold(const RangeProblem& problem, const std::vector<bool>& trusted, Errors errors,
+            double gate, const LocalizeOptions& options, Placement& placement);
 
 }  // namespace isotherm::network::detail
