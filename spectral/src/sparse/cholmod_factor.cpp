@@ -18,6 +18,11 @@ constexpr bool kSupernodalModule = true;
 constexpr bool kSupernodalModule = false;
 #endif
 
+// Parts with fewer nodes are ordered by minimum degree. Of 4, 50, 200 and 1,000 this gives the
+// fewest operations in cities, spheres and grids of 10^5 poses, or within 2 % of them; METIS's own
+// order takes from 1 % less to 11 % more.
+constexpr std::size_t kSmallestDissected = 200;
+
 cholmod_sparse view_of(const LowerTriangle& matrix) {
   cholmod_sparse view = {};
   view.nrow = view.ncol = matrix.starts.size() - 1;
@@ -257,7 +262,8 @@ std::vector<Index> fill_reducing_order(const LowerTriangle& pattern) {
   auto& common = workspace.common;
   common.nmethods = 2;
   common.method[0].ordering = CHOLMOD_AMD;
-  common.method[1].ordering = CHOLMOD_METIS;
+  common.method[1].ordering = CHOLMOD_NESDIS;
+  common.method[1].nd_small = kSmallestDissected;
   common.supernodal = CHOLMOD_SIMPLICIAL;
   cholmod_sparse view = view_of(pattern);
   cholmod_factor* symbolic = cholmod_analyze(&view, &common);

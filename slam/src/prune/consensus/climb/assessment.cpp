@@ -11,7 +11,7 @@ namespace isotherm::slam::detail {
 namespace {
 
 constexpr int kMostSteps = 12;        // of Gauss-Newton, weights included
-constexpr double kSameWeight = 0.05;  // of its log
+constexpr double kSameWeight = 0.02;  // of logs, root mean square
 constexpr double kHopeless = 50.0;  // log odds against, by a bound, beyond which none is solved for
 constexpr int kFixedPointSteps = 30;
 
@@ -123,10 +123,12 @@ void Assessment<Pose>::weigh_new(Explanation<Pose>& now) {
   }
 }
 
-// Whether any weight changed.
+// Whether weights changed. Else all stay those that the factor was formed with.
 template <class Pose>
 bool Assessment<Pose>::reweigh(Explanation<Pose>& now) {
-  bool changed = false;
+  double change = 0.0;
+  double count = 0.0;
+  std::vector<double> weights = now.weights;
   now.found = {};
   now.scale_evidence = 0.0;
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
@@ -136,12 +138,18 @@ bool Assessment<Pose>::reweigh(Explanation<Pose>& now) {
     const double chi2 =
         r.dot(link.information * r) / now.scale.loops + uncertainty(now, static_cast<Index>(k));
     const ErrorScale scale = error_scale(found_.mixture, chi2, Pose::kDof);
-    changed = changed || std::abs(std::log(scale.weight / now.weights[k])) > kSameWeight;
-    now.weights[k] = scale.weight;
+    const double step = std::log(scale.weight / now.weights[k]);
+    change += step * step;
+    count += 1.0;
+    weights[k] = scale.weight;
     now.scale_evidence += scale.evidence;
     for (std::size_t j = 0; j < kScaleCount; ++j) now.found.loops[j] += scale.probability[j];
   }
-  estimate_.weigh_loops(now.weights);
+  const bool changed = change > kSameWeight * kSameWeight * count;
+  if (changed) {
+    now.weights = std::move(weights);
+    estimate_.weigh_loops(now.weights);
+  }
   return changed;
 }
 
@@ -150,8 +158,7 @@ bool Assessment<Pose>::reweigh(Explanation<Pose>& now) {
 template <class Pose>
 double Assessment<Pose>::uncertainty(const Explanation<Pose>& now, Index loop) const {
   const auto& link = graph().loops[loop];
-  const auto J = residual_jacobian<Pose>(estimate_.residual(link));
-  const Matrix P = link.information * (J * found_.covariances[loop] * J.transpose());
+  const Matrix P = link.information * found_.covariances[loop];
   const double held = found_.held.empty() ? 0.0 : found_.held[loop];
   const double more = now.weights[loop] / now.scale.loops - held;
   const double most = Pose::kDof / now.weights[loop];  // where nothing else is known
@@ -190,7 +197,7 @@ void Assessment<Pose>::predict(Explanation<Pose>& now) {
     }
     const auto [first, second] = estimate_.parts(graph().loops[k]);
     if (!alone && first == second) solved.push_back(loop);
-    found_.covariances[k] = graph().odometry_covariance[k] * now.scale.odometry;
+    found_.covariances[k] = odometry_says(loop, now.scale.odometry);
     standing.evidence = 0.0;
   }
   solve(now, solved, !alone);
@@ -199,6 +206,13 @@ void Assessment<Pose>::predict(Explanation<Pose>& now) {
     if (now.accepted[k]) found_.held[k] = now.weights[k] / now.scale.loops;
   }
   found_.held_scale = now.scale.odometry;
+}
+
+// The covariance of a loop's residual where nothing but odometry is known.
+template <class Pose>
+typename Pose::Matrix Assessment<Pose>::odometry_says(Index loop, double scale) const {
+  const auto J = residual_jacobian<Pose>(estimate_.residual(graph().loops[loop]));
+  return scale * J * graph().odometry_covariance[loop] * J.transpose();
 }
 
 // Covariances of these loops, and unless odometry is on its own what it tells of its accuracy.
@@ -210,7 +224,7 @@ void Assessment<Pose>::solve(Explanation<Pose>& now, const std::vector<Index>& l
   if (odometry) {
     for (const auto& step : graph().steps) links.push_back(&step);
   }
-  const auto covariances = estimate_.relative_covariances(links);
+  const auto covariances = estimate_.residual_covariances(links);
   for (std::size_t i = 0; i < loops.size(); ++i) found_.covariances[loops[i]] = covariances[i];
   OdometryComponent<Pose> told;
   if (odometry) {
@@ -238,8 +252,7 @@ template <class Pose>
 typename Pose::Tangent Assessment<Pose>::redundancy(const Explanation<Pose>& now,
                                                     Index loop) const {
   const auto& link = graph().loops[loop];
-  const auto J = residual_jacobian<Pose>(estimate_.residual(link));
-  const Matrix fitted = link.information * J * found_.covariances[loop] * J.transpose();
+  const Matrix fitted = link.information * found_.covariances[loop];
   return (1.0 - now.weights[loop] / now.scale.loops * fitted.diagonal().array()).max(0.0);
 }
 

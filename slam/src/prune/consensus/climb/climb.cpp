@@ -1,6 +1,7 @@
 #include "prune/consensus/climb/climb.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -18,7 +19,6 @@ constexpr double kTelling = 2e-3;
 constexpr int kPatience = 8;
 // Times as many loops have more to tell of how accurate they are.
 constexpr std::size_t kMoreTelling = 2;
-constexpr double kOtherwise = 10.0;  // factor on variances that is worth a try
 
 bool is_part(const std::vector<bool>& part, const std::vector<bool>& whole) {
   for (std::size_t k = 0; k < part.size(); ++k) {
@@ -227,9 +227,11 @@ bool Climb<Pose>::weigh_otherwise() {
   if (!options_.calibrate || redundancy < 1.0) return false;  // nothing tells
   for (const Trial trial : {Trial::wider_loops, Trial::sharper_loops}) {
     if (failed_[trial]) continue;
-    const double factor = trial == Trial::wider_loops ? kOtherwise : 1.0 / kOtherwise;
+    const auto [factor, shares] =
+        trial == Trial::wider_loops ? wider_most(now_.shares) : sharper_most(now_.shares);
     const CovarianceScale scale{now_.scale.odometry, now_.scale.loops * factor};
-    if (try_scales(scale, now_.shapes, now_.shares)) return true;
+    if (std::abs(std::log(scale.loops)) > kMostScale) continue;
+    if (try_scales(scale, now_.shapes, shares)) return true;
     failed_[trial] = true;
   }
   return false;

@@ -16,7 +16,7 @@ constexpr double kMostExpectedFalse = 0.5;
 constexpr double kFalseShare = 1e-3;
 
 // Every loop accepted sharpens what is predicted of the rest and tells how accurate they are.
-constexpr std::size_t kGrowth = 30;
+constexpr std::size_t kGrowth = 10;
 
 // Parents of a forest for find_root().
 std::vector<Index> each_by_itself(std::size_t count) {

@@ -11,13 +11,11 @@
 namespace isotherm::slam::detail {
 namespace {
 
-// Beyond, double precision has no digits left for the rest of the graph.
-const double kMostScale = std::log(1e8);
 // Of a coordinate against the others: a deviation of the prior. Contracted odometry is no longer
 // linear within deviations that are farther apart.
 constexpr double kMostOwn = kScaleDeviation;
 constexpr double kLeastRedundancy = 1e-6;  // less is rounding
-constexpr int kRepetitions = 10;           // of expectation maximisation, from the prior
+constexpr int kRepetitions = 10;           // of expectation maximisation
 
 // The log of the likeliest factor on variances of this cost and redundancy, to first order about
 // cost over redundancy, drawn towards zero by the prior. Of nothing redundant nothing is told.
@@ -113,8 +111,8 @@ std::vector<Residual<Pose>> residuals_of(const Assessment<Pose>& assessment,
 
 // A residual counts as far as it is redundant: the rest of it was fitted.
 template <class Pose>
-ScaleShares likeliest_shares(const std::vector<Residual<Pose>>& residuals, double scale) {
-  ScaleShares shares;
+ScaleShares likeliest_shares(const std::vector<Residual<Pose>>& residuals, double scale,
+                             ScaleShares shares) {
   for (int k = 0; k < kRepetitions; ++k) {
     const ScaleMixture mixture = expected_mixture(scale, shares);
     shares = {};
@@ -182,7 +180,7 @@ Lesson<Pose> learn(const Assessment<Pose>& assessment, const Explanation<Pose>& 
                 log_likelihood(expected_mixture(scale.loops, explanation.shares), residuals);
   const Tangent change = lesson.shapes.loops.cwiseQuotient(shapes.loops);
   for (auto& residual : residuals) residual.parts = residual.parts.cwiseQuotient(change);
-  lesson.shares = likeliest_shares(residuals, lesson.scale.loops);
+  lesson.shares = likeliest_shares(residuals, lesson.scale.loops, explanation.shares);
   lesson.gain += log_likelihood(expected_mixture(lesson.scale.loops, lesson.shares), residuals);
   return lesson;
 }

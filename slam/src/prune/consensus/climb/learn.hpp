@@ -16,7 +16,7 @@ struct Lesson {
 /// The factors on the covariances of odometry, of loops and of each of their coordinates at which
 /// the evidence is highest, to first order: variance components (Helmert), cost over redundancy,
 /// drawn towards the file by their prior (scale_prior.hpp). And the shares of loops as accurate as
-/// most and as stated under which the residuals are likeliest (expectation maximisation). To first
+/// most and less under which the residuals are likeliest (expectation maximisation). To first
 /// order in the logs, so that with far other shapes a lesson may be worse: `same_shapes` learns
 /// factors on all coordinates alone.
 template <class Pose>

@@ -5,12 +5,14 @@
 
 namespace isotherm::slam::detail {
 
-/// How accurate a loop is: as most turn out to be, or as the file states.
-inline constexpr std::size_t kScaleCount = 2;
+/// How accurate a loop is: as most are, or less, by three or ten times in the error (ten is as much
+/// as is believed of a whole file, kScaleDeviation), or as the file states where that is less
+/// still. Against most first, so that the units of the file's information play next to no part.
+inline constexpr std::size_t kScaleCount = 4;
 using ByScale = std::array<double, kScaleCount>;
 
-/// How many loops are which. Of the shares nothing is known before (a Dirichlet distribution
-/// with one loop of each kind).
+/// How many loops are of which scale. Of the share of those that are worse than most nothing is
+/// known before, nor which of them is how much so (a Dirichlet distribution).
 struct ScaleShares {
   ByScale loops{};  ///< how many were found of each scale, as expected
 
@@ -18,12 +20,26 @@ struct ScaleShares {
   double log_evidence() const;
 };
 
+/// The same loops with another scale called that of most.
+struct ScaleShift {
+  double factor;  ///< on the variance of most
+  ScaleShares shares;
+};
+
+/// The commoner of the two that are worse.
+ScaleShift wider_most(const ScaleShares& shares);
+
+/// One a step below: all loops are of the scale next to theirs, if there is one.
+ScaleShift sharper_most(const ScaleShares& shares);
+
 /// What is expected of the next loop.
 struct ScaleMixture {
   double scale = 1.0;  ///< on the stated covariance, of most
-  /// Scales against that of most; of the second that of the file, where most are more accurate.
-  ByScale relative{};
+  ByScale relative{};  ///< scales against that of most, ascending
   ByScale log_share{};
+
+  /// Of those that are not as accurate as most.
+  double share_of_worse() const;
 };
 
 ScaleMixture expected_mixture(double scale, const ScaleShares& shares);
@@ -35,7 +51,7 @@ struct ErrorScale {
   double evidence = 0.0;  ///< mean of log(scale^(-dof/2) / probability)
 };
 
-/// From log densities at each scale, of any common factor. Scales are against that of most.
+/// From log densities at each scale, of any common factor.
 ErrorScale error_scale(const ScaleMixture& mixture, const ByScale& log_density, double dof);
 
 /// From the squared Mahalanobis distance that is expected of the error, at the scale of most.
