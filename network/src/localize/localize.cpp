@@ -76,8 +76,10 @@ class Localization {
     constexpr int kMostRounds = 10;
     for (int round = 0; round < kMostRounds; ++round) {
       ++result_.rounds;
-      weighed_ = round == 0 ? detail::weigh_ranges(problem_, options_, placement_)
-                            : detail::weigh_ranges_again(problem_, options_, weighed_, placement_);
+      const auto absence = detail::Absence::learn(problem_, trusted_, placement_);
+      weighed_ = round == 0 ? detail::weigh_ranges(problem_, absence, options_, placement_)
+                            : detail::weigh_ranges_again(problem_, absence, options_, weighed_,
+                                                         placement_);
       judge_placed();
       if (!update_noise()) return;
     }

@@ -54,6 +54,17 @@ TEST(Absence, CostsWithinTheRadiusOfADiscAndNotBeyond) {
   EXPECT_NEAR(absence.reach(), 0.1, 0.015);
 }
 
+TEST(Absence, ItsSlopeIsTheDerivativeOfItsCost) {
+  const auto points = random_points(400, 1);
+  const auto problem = make_problem(disc_network(points, 0.1, 0.9));
+  const auto absence = Absence::learn(problem, all_of(problem), at(problem, points));
+  constexpr double kStep = 1e-7;
+  for (double distance = 0.0013; distance < 0.2; distance += 0.0031) {
+    const double rise = absence.cost(distance + kStep) - absence.cost(distance - kStep);
+    EXPECT_NEAR(absence.slope(distance), rise / (2.0 * kStep), 1e-4) << distance;
+  }
+}
+
 TEST(Absence, SaysNothingWhereFewHaveARange) {
   const auto points = random_points(400, 2);
   const auto problem = make_problem(disc_network(points, 0.15, 0.3));

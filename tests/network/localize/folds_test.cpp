@@ -2,8 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "localize/fold/fold_trial.hpp"
+#include "localize/fold/fold_axes.hpp"
 #include "localize/fold/open_folds.hpp"
+#include "localize/fold/part_move.hpp"
 #include "network/localize/networks.hpp"
 #include "network/localize/range_problems.hpp"
 
@@ -52,9 +53,9 @@ struct Map {
     return found == folds.end() ? nullptr : &*found;
   }
 
-  FoldOutcome try_it(const Fold& fold) const {
+  MoveOutcome try_it(const Fold& fold) const {
     const Crowd crowd(problem, placement, kNoAbsence.absence);
-    return try_fold(problem, trusted, kGate, kNoAbsence, crowd, placement, fold);
+    return try_move(problem, trusted, kGate, kNoAbsence, crowd, placement, fold.move(placement));
   }
 
   RangeProblem problem;
@@ -120,11 +121,11 @@ TEST(Folds, NoneInSpaceOrOfNothing) {
 TEST(OpenFolds, MirrorsWhatFitsBetterThatWay) {
   Map map(hinged_network(0.0, {{0, 8}, {1, 9}, {2, 10}}));
   map.placement.positions.row(1).tail(5) *= -1.0;
-  EXPECT_EQ(open_folds(map.problem, map.trusted, kGate, {.threads = 1}, map.placement), 1);
+  EXPECT_TRUE(open_folds(map.problem, map.trusted, kGate, {.threads = 1}, map.placement));
   double misfit = 0.0;
   for (const auto& pair : map.problem.pairs) misfit += squared_deviation(map.placement, pair);
   EXPECT_LT(misfit, 1e-3);
-  EXPECT_EQ(open_folds(map.problem, map.trusted, kGate, {.threads = 1}, map.placement), 0);
+  EXPECT_FALSE(open_folds(map.problem, map.trusted, kGate, {.threads = 1}, map.placement));
 }
 
 }  // namespace

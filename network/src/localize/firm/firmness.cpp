@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "isotherm/base/parallel.hpp"
 #include "localize/evidence/crowd.hpp"
 #include "localize/evidence/star.hpp"
 #include "localize/fold/fold_axes.hpp"
-#include "localize/fold/fold_trial.hpp"
+#include "localize/fold/part_move.hpp"
 
 namespace isotherm::network::detail {
 namespace {
@@ -37,9 +38,11 @@ class Firmness {
     // Without anchors a simplex may be mirrored as it is.
     if (!problem_.anchored() && placed_count(firm_) <= problem_.dimension + 1) return placed_;
     std::vector<bool> changed(problem_.nodes, true);
+    std::vector<bool> lines(problem_.nodes, true);
     do {
       release_nodes(std::move(changed));
-      changed = release_folding_parts();
+      changed = release_folding_parts(lines);
+      lines = lines_near(problem_, std::exchange(released_, {}));
     } while (std::find(changed.begin(), changed.end(), true) != changed.end());
     return with_those_beside();
   }
@@ -81,23 +84,23 @@ class Firmness {
 
   void release(Index node, std::vector<bool>& changed) {
     firm_.placed[node] = false;
+    released_.push_back(node);
     for (const auto& neighbour : problem_.pair_graph.neighbours(node)) {
       changed[neighbour.vertex] = true;
     }
   }
 
-  // Takes out what is elsewhere in a mirror image of a part that fits nearly as well. The nodes
-  // around it.
-  std::vector<bool> release_folding_parts() {
+  // Takes out what is elsewhere in a mirror image, in one of these lines, of a part that fits
+  // nearly as well. The nodes around it.
+  std::vector<bool> release_folding_parts(const std::vector<bool>& lines) {
     std::vector<bool> changed(problem_.nodes, false);
     const Crowd crowd(problem_, firm_, evidence_.absence);
-    const std::vector<bool> everywhere(problem_.nodes, true);
-    for (const auto& fold :
-         find_folds(problem_, trusted_, evidence_, options_, firm_, everywhere)) {
+    for (const auto& fold : find_folds(problem_, trusted_, evidence_, options_, firm_, lines)) {
       const bool is_whole =
           std::all_of(fold.part.begin(), fold.part.end(), [&](Index v) { return firm_.placed[v]; });
       if (!is_whole) continue;
-      const auto outcome = try_fold(problem_, trusted_, gate_, evidence_, crowd, firm_, fold);
+      const auto outcome =
+          try_move(problem_, trusted_, gate_, evidence_, crowd, firm_, fold.move(firm_));
       if (outcome.extra >= clear_) continue;
       for (const Index v : outcome.moved) release(v, changed);
     }
@@ -130,6 +133,7 @@ class Firmness {
   double clear_;
   std::vector<bool> placed_;
   Placement firm_;
+  Nodes released_;  // since the last search for folds
 };
 
 }  // namespace

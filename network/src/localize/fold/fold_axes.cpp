@@ -218,7 +218,7 @@ bool are_alike(const std::vector<Index>& a, const std::vector<Index>& b) {
 // Each part in one line, and of parts that are alike a few: they differ by what is near the line.
 // Given the cheapest first.
 std::vector<Fold> cheapest_of_alike(std::vector<Fold> folds) {
-  constexpr int kMostAlike = 5;
+  constexpr int kMostAlike = 2;
   std::vector<Fold> kept;
   std::unordered_map<Index, std::vector<std::size_t>> kept_with;  // node -> places in `kept`
   for (auto& fold : folds) {
@@ -241,6 +241,12 @@ std::vector<Fold> cheapest_of_alike(std::vector<Fold> folds) {
 
 Point Fold::mirrored(const Point& point) const {
   return point - 2.0 * normal.dot(point - through) * normal;
+}
+
+PartMove Fold::move(const Placement& placement) const {
+  PartMove result{part, placement.positions(Eigen::all, part)};
+  for (auto place : result.positions.colwise()) place = mirrored(place).eval();
+  return result;
 }
 
 std::vector<Fold> find_folds(const RangeProblem& problem, const std::vector<bool>& trusted,
