@@ -48,8 +48,8 @@ class Estimate {
   /// @throws NumericalError if the normal equations break down
   void update(const std::vector<bool>& accepted, const CovarianceScale& scale, int max_steps);
 
-  /// The same, until weights settle too: whenever poses have, `reweigh` may call weigh_loops(),
-  /// and says whether it did.
+  /// The same, until weights settle too: whenever poses nearly have, `reweigh` may call
+  /// weigh_loops(), and says whether it did.
   void settle(const std::vector<bool>& accepted, const CovarianceScale& scale, int max_steps,
               const std::function<bool()>& reweigh);
 
