@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "prune/consensus/objective/log_odds.hpp"
 #include "prune/consensus/objective/loop_gain.hpp"
 
 namespace isotherm::slam::detail {
@@ -110,7 +111,7 @@ void Assessment<Pose>::find_peak(Explanation<Pose>& now) {
   estimate_.weigh_loops(now.weights);
   bool believed = false;
   estimate_.settle(now.accepted, now.scale, kMostSteps,
-                   [&] { return reweigh(now, std::exchange(believed, true) ? kSameWeight : 0.0); });
+                   [&] { return reweigh(now, !std::exchange(believed, true)); });
 }
 
 // Loops accepted since the last assessment, by what the others said of them.
@@ -125,11 +126,11 @@ void Assessment<Pose>::weigh_new(Explanation<Pose>& now) {
   }
 }
 
-// Whether weights changed by more than `same`. Else all stay those that the factor was formed with,
-// and what was found with them: of other weights the evidence would be off by their change times
-// the squared error, and so it is by the square of the change.
+// Whether weights changed, by so much as matters or `anyway`. Else all stay those that the factor
+// was formed with, and what was found with them: of other weights the evidence would be off by
+// their change times the squared error, and so it is by the square of the change.
 template <class Pose>
-bool Assessment<Pose>::reweigh(Explanation<Pose>& now, double same) {
+bool Assessment<Pose>::reweigh(Explanation<Pose>& now, bool anyway) {
   double change = 0.0;
   double count = 0.0;
   std::vector<double> weights = now.weights;
@@ -149,7 +150,7 @@ bool Assessment<Pose>::reweigh(Explanation<Pose>& now, double same) {
     evidence += scale.evidence;
     found.add(scale);
   }
-  if (change <= same * same * count && same > 0.0) return false;
+  if (!anyway && change <= kSameWeight * kSameWeight * count) return false;
   now.weights = std::move(weights);
   now.found = found;
   now.scale_evidence = evidence;
@@ -313,7 +314,7 @@ void Assessment<Pose>::add_prior(Explanation<Pose>& now) const {
   for (int step = 0; step < kFixedPointSteps; ++step) {
     double kept = 1.0;
     for (std::size_t k = 0; k < standings.size(); ++k) {
-      kept += now.accepted[k] ? 1.0 : 1.0 / (1.0 + std::exp(-standings[k].evidence - prior));
+      kept += now.accepted[k] ? 1.0 : probability_of(standings[k].evidence + prior);
     }
     prior = std::log(kept / (2.0 + static_cast<double>(standings.size()) - kept));
   }

@@ -81,7 +81,7 @@ class Assessment {
   void find_nearness(const Explanation<Pose>& now);
   double ceiling(Explanation<Pose>& now) const;
   double evidence(const Explanation<Pose>& now) const;
-  bool reweigh(Explanation<Pose>& now, double same);
+  bool reweigh(Explanation<Pose>& now, bool anyway);
   double uncertainty(const Explanation<Pose>& now, Index loop) const;
   void weigh_new(Explanation<Pose>& now);
   bool bounds(const Explanation<Pose>& now) const;

@@ -129,14 +129,12 @@ ScaleShares likeliest_from(const ScaleShift& start, double scale,
                            std::vector<Residual<Pose>>& residuals) {
   ScaleShares shares = start.shares;
   double log_scale = std::log(scale * start.factor);
+  double redundancy = 0.0;
+  for (const auto& residual : residuals) redundancy += residual.redundancy;
   for (int k = 0; k < kRepetitions; ++k) {
     shares = weigh(expected_mixture(std::exp(log_scale), shares), residuals);
     double cost = 0.0;
-    double redundancy = 0.0;
-    for (const auto& residual : residuals) {
-      cost += residual.weight * residual.chi2();
-      redundancy += residual.redundancy;
-    }
+    for (const auto& residual : residuals) cost += residual.weight * residual.chi2();
     log_scale = std::clamp(drawn_in(cost, redundancy), -kMostScale, kMostScale);
   }
   return shares;
@@ -167,7 +165,8 @@ std::pair<double, Tangent> scale_and_shape(const Tangent& logs) {
   return {std::exp(logs.mean()), (logs.array() - logs.mean()).exp()};
 }
 
-// From this scale called that of most, with these residuals of loops.
+// From this scale called that of most, with these residuals of loops; what they gain is not yet
+// against how likely they were before.
 template <class Pose>
 Lesson<Pose> lesson_from(const ScaleShift& start, const Explanation<Pose>& explanation,
                          std::vector<Residual<Pose>> residuals, bool same_shapes) {
@@ -175,7 +174,6 @@ Lesson<Pose> lesson_from(const ScaleShift& start, const Explanation<Pose>& expla
   const auto& [scale, shapes, redundancy] =
       std::tie(explanation.scale, explanation.shapes, explanation.redundancy);
   Lesson<Pose> lesson;
-  lesson.gain = -log_likelihood(expected_mixture(scale.loops, explanation.shares), residuals);
   lesson.shares = likeliest_from(start, scale.loops, residuals);
   Tangent loops_cost = Tangent::Zero();
   for (const auto& residual : residuals) loops_cost += residual.weight * residual.parts;
@@ -189,10 +187,10 @@ Lesson<Pose> lesson_from(const ScaleShift& start, const Explanation<Pose>& expla
 
   std::tie(lesson.scale.odometry, lesson.shapes.odometry) = scale_and_shape(odometry_now);
   std::tie(lesson.scale.loops, lesson.shapes.loops) = scale_and_shape(loops_now);
-  lesson.gain += odometry.evidence(odometry_now) - odometry.evidence(odometry_before) +
-                 log_scale_peak(loops_now, redundancy.loops) -
-                 log_scale_peak(loops_before, redundancy.loops) -
-                 0.5 * redundancy.loops.dot(loops_now - loops_before);
+  lesson.gain = odometry.evidence(odometry_now) - odometry.evidence(odometry_before) +
+                log_scale_peak(loops_now, redundancy.loops) -
+                log_scale_peak(loops_before, redundancy.loops) -
+                0.5 * redundancy.loops.dot(loops_now - loops_before);
   const Tangent change = lesson.shapes.loops.cwiseQuotient(shapes.loops);
   for (auto& residual : residuals) residual.parts = residual.parts.cwiseQuotient(change);
   const ScaleMixture mixture = expected_mixture(lesson.scale.loops, lesson.shares);
@@ -213,6 +211,7 @@ Lesson<Pose> learn(const Assessment<Pose>& assessment, const Explanation<Pose>& 
     const auto lesson = lesson_from(other, explanation, residuals, same_shapes);
     if (lesson.gain > best.gain) best = lesson;
   }
+  best.gain -= log_likelihood(expected_mixture(explanation.scale.loops, shares), residuals);
   return best;
 }
 
