@@ -6,6 +6,7 @@
 
 #include <cholmod.h>
 
+#include "isotherm/base/blas_threads.hpp"
 #include "isotherm/base/error.hpp"
 #include "sparse/find_supernodes.hpp"
 
@@ -64,6 +65,7 @@ struct Workspace {
   cholmod_common common = {};
 
   Workspace() {
+    isotherm::detail::blas_serves_threads();  // makes it use one a call
     cholmod_start(&common);
     common.print = 0;
     common.error_handler = nullptr;

@@ -1,8 +1,13 @@
 #include "sparse/dense_kernels.hpp"
 
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 
+#include "isotherm/base/parallel.hpp"
 #include "isotherm/base/random.hpp"
 
 namespace isotherm::spectral::detail {
@@ -50,6 +55,27 @@ TEST(DenseKernels, SymmetricProductIsTheGeneralOne) {
       expect_symmetric_product<Eigen::MatrixXcd>(n, inner);
     }
   }
+}
+
+// A BLAS whose calls share a buffer gives one in a hundred of these products wrong.
+TEST(DenseKernels, ProductsOnSeveralThreadsAreThoseOnOne) {
+  Random random(3);
+  constexpr std::int64_t kCount = 20000;
+  std::vector<Eigen::MatrixXd> factors;
+  for (int k = 0; k < 7; ++k) factors.push_back(random_matrix<Eigen::MatrixXd>(random, 24, 24));
+  const auto product = [&factors](std::int64_t k) {
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(24, 24);
+    add_transposed_product(result, 1.0, factors[static_cast<std::size_t>(k % 7)],
+                           factors[static_cast<std::size_t>(k * k % 7)]);
+    return result;
+  };
+  std::vector<Eigen::MatrixXd> alone;
+  for (std::int64_t k = 0; k < 7; ++k) alone.push_back(product(k));
+  std::atomic<int> wrong = 0;
+  parallel_for(kCount, 0, {}, "products", [&](std::int64_t k) {
+    if (product(k) != alone[static_cast<std::size_t>(k % 7)]) ++wrong;
+  });
+  EXPECT_EQ(wrong, 0);
 }
 
 }  // namespace
