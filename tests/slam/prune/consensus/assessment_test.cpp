@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "isotherm/base/random.hpp"
+#include "prune/consensus/objective/loop_gain.hpp"
 #include "slam/loop_graph.hpp"
 
 namespace isotherm::slam::detail {
@@ -32,6 +33,18 @@ class AssessmentOf : public testing::Test {
     }
     EXPECT_EQ(assessment.nearness_found().assessments, static_cast<double>(counts.size()));
     return assessment.nearness_found().times;
+  }
+
+  /// That the first `count` loops are true, found as a climb does: from nothing.
+  Explanation<Pose> accepting(Assessment<Pose>& assessment, int count, double scale = 1.0,
+                              const ScaleShares& shares = {}) {
+    Explanation<Pose> now{
+        .accepted = std::vector<bool>(kLoops, false), .scale = {1.0, scale}, .shares = shares};
+    now.weights.assign(kLoops, 1.0);
+    assessment.assess(now);
+    std::fill_n(now.accepted.begin(), count, true);
+    assessment.assess(now);
+    return now;
   }
 
   Random random_{3};
@@ -82,16 +95,34 @@ TYPED_TEST(AssessmentOf, SettlesUntilStandingsDo) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) expect_settled_standings<TypeParam>(seed);
 }
 
+// Of an accepted loop, against the same of an estimate that does not hold it.
+TYPED_TEST(AssessmentOf, WeighsLoopsAsTheOthersSay) {
+  using Pose = TypeParam;
+  Assessment<Pose> assessment(this->objective_);
+  Explanation<Pose> now = this->accepting(assessment, this->kLoops);
+  const auto& graph = assessment.graph();
+  for (const std::size_t k : {0, 7, 20, 39}) {
+    Explanation<Pose> others = now;
+    others.accepted[k] = false;
+    Assessment<Pose> without(this->objective_);
+    without.assess(others);
+    const auto& found = without.findings();
+    const auto prediction = predict<Pose>(without.estimate().residual(graph.loops[k]),
+                                          found.covariances[k], graph.loops[k].covariance);
+    const auto gain = loop_gain<Pose>(prediction, found.mixture,
+                                      this->objective_.scale_deviation(others.redundancy));
+    EXPECT_NEAR(now.standings[k].weight, gain.weight, 0.05) << k;  // the others settle anew
+    EXPECT_LT(gain.weight, 1.0) << k;
+  }
+}
+
 // Weights and shares take turns, each the best given the other.
 TYPED_TEST(AssessmentOf, FindsMoreEvidenceEachTime) {
   using Pose = TypeParam;
   for (const double scale :
        {1.0, 1.0 / 3.0, 1.0 / 30.0}) {  // sharper than stated: loops of all kinds
     Assessment<Pose> assessment(this->objective_);
-    Explanation<Pose> now{.accepted = std::vector<bool>(this->kLoops, true), .scale = {1.0, scale}};
-    now.shares.loops = {20.0, 10.0, 10.0, 0.0};
-    now.weights.assign(this->kLoops, 1.0);
-    assessment.assess(now);
+    auto now = this->accepting(assessment, this->kLoops, scale, {{20.0, 10.0, 10.0, 0.0}});
     for (int again = 0; again < 9; ++again) {
       const double before = now.evidence;
       now.shares = now.found;

@@ -40,6 +40,12 @@ TEST(ScaleShares, GoFromScaleToScaleWithMost) {
   EXPECT_DOUBLE_EQ(sharper.factor, 1.0 / 3.0);
 }
 
+TEST(ScaleShares, CountLoopsAsOfDifferentScalesFromOneStepOn) {
+  EXPECT_TRUE(are_of_different_scales(1.0, 1.0 / 3.0));
+  EXPECT_TRUE(are_of_different_scales(1.0 / 9.0, 1.0));
+  EXPECT_FALSE(are_of_different_scales(0.4, 0.9));
+}
+
 TEST(ScaleMixture, GoesAsFarAsTheFileStates) {
   EXPECT_DOUBLE_EQ(expected_mixture(1e-5, {}).relative.back() * 1e-5, 1.0);
   const auto nearer = expected_mixture(0.2, {{6.0, 2.0, 0.0, 0.0}});

@@ -36,7 +36,7 @@ Assessment<Pose>::Assessment(const Objective<Pose>& objective, Pace pace)
       found_{.graph = std::make_shared<ScaledGraph<Pose>>(objective.stated())},
       estimate_(found_.graph->reduced, pace_),
       odometry_(estimate_.layout()) {
-  found_.covariances.resize(graph().loops.size());
+  found_.covariances.assign(graph().loops.size(), Matrix::Zero());
 }
 
 template <class Pose>
@@ -284,7 +284,7 @@ Standing Assessment<Pose>::accepted_standing(const Explanation<Pose>& now, Index
   const auto gain = loop_gain<Pose>(prediction, found_.mixture, objective_.scale_deviation(others));
   // Alone it would join parts that lie anywhere on the map.
   const double density = std::max(gain.log_density, -objective_.log_volume() - 0.5 * gain.chi2);
-  return {.chi2 = gain.chi2, .evidence = density - log_alternative(loop)};
+  return {.chi2 = gain.chi2, .evidence = density - log_alternative(loop), .weight = gain.weight};
 }
 
 template <class Pose>

@@ -99,7 +99,7 @@ Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
   grow();
   now_.accepted = accepted;
   assess();
-  while (learn_more_than(0.0) || weigh_otherwise()) {
+  while (learn_more_than(0.0) || weigh_by_others() || weigh_otherwise()) {
   }
   return now_;
 }
@@ -199,7 +199,7 @@ bool Climb<Pose>::has_fallen_behind() const {
 // False where no move is left.
 template <class Pose>
 bool Climb<Pose>::move() {
-  return shift() || learn_more_than(0.0) || weigh_otherwise();
+  return shift() || learn_more_than(0.0) || weigh_by_others() || weigh_otherwise();
 }
 
 // The same at about these scales.
@@ -216,6 +216,23 @@ bool Climb<Pose>::shift() {
     return false;
   }
   return true;
+}
+
+// A loop that is taken for accurate draws the map to itself, and looks accurate there: each is as
+// accurate as the others say.
+template <class Pose>
+bool Climb<Pose>::weigh_by_others() {
+  if (failed_[Trial::weights_by_others]) return false;
+  std::vector<double> weights = now_.weights;
+  bool differ = false;
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    if (!now_.accepted[k]) continue;
+    weights[k] = now_.standings[k].weight;
+    differ = differ || are_of_different_scales(weights[k], now_.weights[k]);
+  }
+  if (differ && try_with([&](auto& now) { now.weights = weights; })) return true;
+  failed_[Trial::weights_by_others] = true;
+  return false;
 }
 
 // Odometry against loops: where the one is taken for exact, the other has all the errors, of which
@@ -326,12 +343,21 @@ bool Climb<Pose>::learn_more_than(double gain) {
 template <class Pose>
 bool Climb<Pose>::try_scales(const CovarianceScale& scale, const Shapes<Pose>& shapes,
                              const ScaleShares& shares, const Layout* from) {
+  const auto change = [&](Explanation<Pose>& now) {
+    now.scale = scale;
+    now.shapes = shapes;
+    now.shares = shares;
+  };
+  return try_with(change, from);
+}
+
+template <class Pose>
+bool Climb<Pose>::try_with(const std::function<void(Explanation<Pose>&)>& change,
+                           const Layout* from) {
   const Explanation<Pose> before = now_;
   const auto found = assessment_.findings();
   const auto failed = failed_;
-  now_.scale = scale;
-  now_.shapes = shapes;
-  now_.shares = shares;
+  change(now_);
   if (from) assessment_.stand_on(*from);
   bool better = false;
   try {

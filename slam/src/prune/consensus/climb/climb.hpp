@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -53,7 +54,7 @@ class Climb {
   bool settled() const noexcept { return settled_; }
 
  private:
-  enum Trial { lesson, lesson_of_scales, wide_loops };
+  enum Trial { lesson, lesson_of_scales, weights_by_others, wide_loops };
 
   using Layout = typename Estimate<Pose>::Layout;
 
@@ -83,9 +84,12 @@ class Climb {
   Group next_batch() const;
   void accept(const Selection& loops);
   bool learn_more_than(double gain);
+  bool weigh_by_others();
   bool weigh_otherwise();
   bool try_scales(const CovarianceScale& scale, const Shapes<Pose>& shapes,
                   const ScaleShares& shares, const Layout* from = nullptr);
+  bool try_with(const std::function<void(Explanation<Pose>&)>& change,
+                const Layout* from = nullptr);
   void predict_runs();
   void note(std::size_t accepted, std::size_t dropped);
   void tell_progress() const;
@@ -104,7 +108,7 @@ class Climb {
   std::size_t longest_ = 0;       // of earlier climbs
   std::vector<bool> dropped_;     // since the climb last rose; not tried again
   std::size_t learnt_from_ = 0;   // loops, at the last lesson
-  std::array<bool, 3> failed_{};  // trials of other scales here; not repeated until a change
+  std::array<bool, 4> failed_{};  // trials here; not repeated until a change
   std::vector<ConsensusMove> moves_;
   bool settled_ = true;
 };

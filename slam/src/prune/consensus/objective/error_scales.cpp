@@ -37,6 +37,10 @@ double ScaleShares::log_evidence() const {
   return log_probability;
 }
 
+bool are_of_different_scales(double weight, double other) {
+  return std::max(weight, other) >= kStep * std::min(weight, other);
+}
+
 ScaleShift wider_most(const ScaleShares& shares) {
   const auto& [most, worse, worst, stated] = shares.loops;
   return {kStep, {{most + worse, worst, 0.0, stated}}};

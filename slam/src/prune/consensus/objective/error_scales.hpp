@@ -30,6 +30,9 @@ struct ScaleShares {
   double log_evidence() const;
 };
 
+/// Whether loops of these weights err as loops of different scales do.
+bool are_of_different_scales(double weight, double other);
+
 /// The same loops with another scale called that of most.
 struct ScaleShift {
   double factor;  ///< on the variance of most
