@@ -11,8 +11,6 @@
 namespace isotherm::slam::detail {
 namespace {
 
-// Nats by which an explanation must be better to go on.
-constexpr double kBetter = 0.1;
 // Moves in a row that may find nothing better, or nothing that would lead in as many to the highest
 // peak of earlier climbs.
 constexpr int kPatience = 8;
@@ -24,6 +22,16 @@ bool is_part(const std::vector<bool>& part, const std::vector<bool>& whole) {
     if (part[k] && !whole[k]) return false;
   }
   return true;
+}
+
+// Takes the scales of a lesson or of another explanation.
+template <class Found>
+auto scales_of(const Found& found) {
+  return [&found](auto& now) {
+    now.scale = found.scale;
+    now.shapes = found.shapes;
+    now.shares = found.shares;
+  };
 }
 
 }  // namespace
@@ -122,7 +130,7 @@ const Explanation<Pose>* Climb<Pose>::peak_ahead(bool learnt) {
     if (now_.accepted == peak.accepted) {
       if (!outdoes(peak)) return &peak;
     } else if (learnt && is_part(now_.accepted, peak.accepted)) {
-      if (try_scales(peak.scale, peak.shapes, peak.shares, &peak.layout)) return &peak;
+      if (try_with(scales_of(peak), -kBetter, &peak.layout)) return &peak;
     }
   }
   return nullptr;
@@ -243,10 +251,9 @@ bool Climb<Pose>::weigh_otherwise() {
   if (!options_.calibrate || redundancy < 1.0) return false;  // nothing tells
   if (failed_[Trial::wide_loops]) return false;
   const auto [factor, shares] = all_as_worst(now_.shares);
-  const CovarianceScale scale{now_.scale.odometry, now_.scale.loops * factor};
-  if (std::log(scale.loops) < kMostScale &&
-      most_gain_of_wider(factor, assessment_, now_) > kBetter &&
-      try_scales(scale, now_.shapes, shares)) {
+  const Lesson<Pose> wider{{now_.scale.odometry, now_.scale.loops * factor}, now_.shapes, shares};
+  if (std::log(wider.scale.loops) < kMostScale &&
+      most_gain_of_wider(factor, assessment_, now_) > kBetter && try_with(scales_of(wider))) {
     return true;
   }
   failed_[Trial::wide_loops] = true;
@@ -332,28 +339,17 @@ bool Climb<Pose>::learn_more_than(double gain) {
     if (failed_[trial]) continue;
     const Lesson<Pose> found = learn(assessment_, now_, trial == Trial::lesson_of_scales);
     if (found.gain <= least) continue;
-    if (try_scales(found.scale, found.shapes, found.shares)) return true;
+    if (try_with(scales_of(found))) return true;
     failed_[trial] = true;
+    if (found.shapes.is_about(now_.shapes)) failed_[Trial::lesson_of_scales] = true;
   }
   return false;
 }
 
-// Whether they explain better, with the map sought `from` there, or else nothing changes. Scales at
+// Whether that gains as much, with the map sought `from` there, or else nothing changes. Scales at
 // which the normal equations break down explain nothing.
 template <class Pose>
-bool Climb<Pose>::try_scales(const CovarianceScale& scale, const Shapes<Pose>& shapes,
-                             const ScaleShares& shares, const Layout* from) {
-  const auto change = [&](Explanation<Pose>& now) {
-    now.scale = scale;
-    now.shapes = shapes;
-    now.shares = shares;
-  };
-  return try_with(change, from);
-}
-
-template <class Pose>
-bool Climb<Pose>::try_with(const std::function<void(Explanation<Pose>&)>& change,
-                           const Layout* from) {
+bool Climb<Pose>::try_with(const Change& change, double gain, const Layout* from) {
   const Explanation<Pose> before = now_;
   const auto found = assessment_.findings();
   const auto failed = failed_;
@@ -361,7 +357,7 @@ bool Climb<Pose>::try_with(const std::function<void(Explanation<Pose>&)>& change
   if (from) assessment_.stand_on(*from);
   bool better = false;
   try {
-    better = assess(before.evidence + kBetter);
+    better = assess(before.evidence + gain);
   } catch (const NumericalError&) {
     better = false;
   }

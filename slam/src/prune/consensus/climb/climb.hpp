@@ -57,6 +57,10 @@ class Climb {
   enum Trial { lesson, lesson_of_scales, weights_by_others, wide_loops };
 
   using Layout = typename Estimate<Pose>::Layout;
+  using Change = std::function<void(Explanation<Pose>&)>;
+
+  // Nats by which an explanation must be better to go on.
+  static constexpr double kBetter = 0.1;
 
   // Where a climb was, and the number of the peak that it led to; of this one that of the next.
   struct Passed {
@@ -86,10 +90,7 @@ class Climb {
   bool learn_more_than(double gain);
   bool weigh_by_others();
   bool weigh_otherwise();
-  bool try_scales(const CovarianceScale& scale, const Shapes<Pose>& shapes,
-                  const ScaleShares& shares, const Layout* from = nullptr);
-  bool try_with(const std::function<void(Explanation<Pose>&)>& change,
-                const Layout* from = nullptr);
+  bool try_with(const Change& change, double gain = kBetter, const Layout* from = nullptr);
   void predict_runs();
   void note(std::size_t accepted, std::size_t dropped);
   void tell_progress() const;

@@ -13,6 +13,11 @@ struct Shapes {
   typename Pose::Tangent loops = Pose::Tangent::Ones();
 
   bool operator==(const Shapes&) const = default;
+
+  /// To rounding.
+  bool is_about(const Shapes& other) const {
+    return odometry.isApprox(other.odometry) && loops.isApprox(other.loops);
+  }
 };
 
 /// Of rotation's variances against translation's, by geometric means.
