@@ -28,14 +28,13 @@ from support.runs import Command, Results, read_csv, run_all
 
 SEED = 7  # of variants and of false loops
 EVERY = 12  # cells of all, so that it takes an hour
-ROOM = "slam/src/prune/consensus"
+ROOM = pathlib.Path("slam/src/prune/consensus")
 PREFIX = "ISOTHERM_"
 NATS = 1.0
 
 
 @dataclasses.dataclass(frozen=True)
 class Constant:
-    file: str
     name: str
     value: str
     meaning: str
@@ -43,37 +42,26 @@ class Constant:
 
 
 CONSTANTS = [
-    Constant("objective/scale_prior.hpp", "kScaleDeviation", "2 ln 10",
+    Constant("kScaleDeviation", "2 ln 10",
              "deviation of the log of a factor on covariances: ten in the error", (2.3, 9.2)),
-    Constant("objective/error_scales.cpp", "kStep", "3",
-             "of variances, from one kind of loop to the next", (2, 10)),
-    Constant("objective/near_density.cpp", "kReach", "3.5",
-             "deviations to which a kernel of near pairs reaches", (2, 7)),
-    Constant("estimate/map_volume.cpp", "kLeastAspect", "0.05",
-             "thickness of a flat map, which false loops leave", (0.01, 0.3)),
-    Constant("climb/report.hpp", "kFewLoops", "5",
-             "loops of which none is pruned if there are fewer", (0, 20)),
-    Constant("climb/climb.cpp", "kBetter", "0.1", "nats by which a move must be better", (0.01, 1)),
-    Constant("climb/climb.cpp", "kPatience", "8", "moves that may find nothing better", (3, 20)),
-    Constant("climb/climb.cpp", "kMoreTelling", "2", "times as many loops tell scales anew",
-             (1, 1000)),
-    Constant("climb/groups.cpp", "kMostExpectedFalse", "0.5",
-             "loops of a batch that may be expected false", (0.1, 5)),
-    Constant("climb/groups.cpp", "kFalseShare", "1e-3", "the same as a share of those in force",
-             (0, 1e-2)),
-    Constant("climb/groups.cpp", "kGrowth", "10", "times as many loops as before in a batch",
-             (3, 100)),
-    Constant("climb/learn.cpp", "kRepetitions", "10", "of expectation maximisation", (3, 30)),
-    Constant("climb/assessment.cpp", "kSameWeight", "0.05", "change of a log weight that matters",
-             (0.005, 0.5)),
-    Constant("climb/assessment.cpp", "kHopeless", "50",
+    Constant("kScaleStep", "3", "of variances, from one kind of loop to the next", (2, 10)),
+    Constant("kLoopsBefore", "1", "loops of either kind that count as seen before any is", (0.5, 4)),
+    Constant("kReach", "3.5", "deviations to which a kernel of near pairs reaches", (2, 7)),
+    Constant("kLeastAspect", "0.05", "thickness of a flat map, which false loops leave",
+             (0.01, 0.3)),
+    Constant("kFewLoops", "5", "loops of which none is pruned if there are fewer", (0, 20)),
+    Constant("kBetter", "0.1", "nats by which a move must be better", (0.01, 1)),
+    Constant("kPatience", "8", "moves that may find nothing better", (3, 20)),
+    Constant("kMoreTelling", "2", "times as many loops tell scales anew", (1, 1000)),
+    Constant("kMostExpectedFalse", "0.5", "loops of a batch that may be expected false", (0.1, 5)),
+    Constant("kFalseShare", "1e-3", "the same as a share of those in force", (0, 1e-2)),
+    Constant("kBatchGrowth", "10", "times as many loops as before in a batch", (3, 100)),
+    Constant("kSettled", "0.01", "deviations below which a step of poses does not matter",
+             (0.001, 0.1)),
+    Constant("kSameWeight", "0.05", "change of a log weight that matters", (0.005, 0.5)),
+    Constant("kNodes", "4", "nodes to either side, for an integral", (0, 8)),
+    Constant("kHopeless", "50",
              "log odds against, by a bound, beyond which no covariance is solved for", (20, 200)),
-    Constant("estimate/estimate.cpp", "kSettled", "0.01",
-             "deviations below which a step of poses does not matter", (0.001, 0.1)),
-    Constant("pairs/near_pairs.cpp", "kMostPartners", "12", "partners that a loop is paired with",
-             (3, 50)),
-    Constant("objective/loop_gain.cpp", "kNodes", "4", "nodes to either side, for an integral",
-             (0, 8)),
 ]
 STARTS = ["as stated", "odometry x 100", "loops x 0.01", "both x 0.01"]
 FLAGS = {"window 5": ["--window", 5], "window 80": ["--window", 80],
@@ -88,27 +76,41 @@ def from_environment(text, constant):
             r"""); return text ? static_cast<\2>(std::strtod(text, nullptr)) : static_cast<\2>(\3); }();""")
     changed, count = re.subn(pattern, code, text)
     if count != 1:
-        raise RuntimeError(f"{constant.file} has no {constant.name}")
-    return changed.replace("#pragma once\n", "#pragma once\n#include <cstdlib>\n", 1) \
-        if constant.file.endswith(".hpp") else "#include <cstdlib>\n" + changed
+        raise RuntimeError(f"constants.hpp has no {constant.name}")
+    return changed
+
+
+def replace(path, pairs):
+    text = path.read_text("utf-8")
+    for before, after in pairs:
+        if before not in text:
+            raise RuntimeError(f"{path.name} does not hold {before!r}")
+        text = text.replace(before, after)
+    path.write_text(text, "utf-8")
 
 
 def instrument(tree):
+    room = tree / ROOM
+    text = (room / "constants.hpp").read_text("utf-8")
     for constant in CONSTANTS:
-        path = tree / ROOM / constant.file
-        path.write_text(from_environment(path.read_text("utf-8"), constant), "utf-8")
-    learn = tree / ROOM / "climb/learn.cpp"
-    learn.write_text(learn.read_text("utf-8").replace("constexpr double kMostOwn",
-                                                      "const double kMostOwn"), "utf-8")
-    starts = tree / ROOM / "climb/starts.hpp"
-    loop = "for (const auto& start : kStarts) {"
-    text = starts.read_text("utf-8")
-    if loop not in text:
-        raise RuntimeError("starts.hpp has another loop than expected")
-    skip = (f'{loop}\n    const char* without = std::getenv("{PREFIX}kStarts");\n'
-            "    if (without && &start - kStarts.data() == std::atoi(without)) continue;")
-    starts.write_text(text.replace(loop, skip).replace(
-        "#pragma once\n", "#pragma once\n#include <cstdlib>\n", 1), "utf-8")
+        text = from_environment(text, constant)
+    (room / "constants.hpp").write_text(
+        text.replace("#pragma once\n", "#pragma once\n#include <cstdlib>\n", 1), "utf-8")
+    # What follows from them is no longer known to the compiler.
+    replace(room / "climb/learn.cpp", [("constexpr double kMostOwn", "const double kMostOwn")])
+    replace(room / "objective/scale_prior.hpp",
+            [("inline constexpr double kMostScale", "inline const double kMostScale")])
+    replace(room / "objective/error_scales.cpp",
+            [(f"constexpr {name}", f"const {name}")
+             for name in ("double kWorst", "double kOther", "ByScale kPriorLoops")])
+    replace(room / "objective/loop_gain.cpp", [("2 * kNodes + 1, 1>", "Eigen::Dynamic, 1>")])
+    replace(tree / "slam/src/online/engine.cpp", [("constexpr Index kFirst", "const Index kFirst")])
+    loop = "for (const auto& [odometry, loops] : kStarts) {"
+    replace(room / "climb/starts.hpp",
+            [(loop, f'int start = 0;\n  {loop}\n'
+                    f'    const char* without = std::getenv("{PREFIX}kStarts");\n'
+                    "    if (without && start++ == std::atoi(without)) continue;"),
+             ("#pragma once\n", "#pragma once\n#include <cstdlib>\n")])
 
 
 def build(folder):
@@ -189,8 +191,8 @@ def page(base, rows, cell_count):
              "|---|---|---|---|---|---|---|---|---|---|---|",
              line_of("as they are", "", "", "", base, base, True)]
     for constant in CONSTANTS:
-        model = constant.name in ("kScaleDeviation", "kPriorLoops", "kReach", "kLeastAspect",
-                                  "kNodes")
+        model = constant.name in ("kScaleDeviation", "kScaleStep", "kLoopsBefore", "kReach",
+                                  "kLeastAspect", "kNodes")
         lines += [line_of(f"`{constant.name}`", constant.meaning, constant.value, f"{value:g}",
                           rows[f"{constant.name}={value:g}"], base, not model)
                   for value in constant.tried if f"{constant.name}={value:g}" in rows]

@@ -10,6 +10,7 @@
 #include "online/present_map.hpp"
 #include "online/reason.hpp"
 #include "prune/consensus/climb/report.hpp"
+#include "prune/consensus/constants.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
 
 namespace isotherm::slam::detail {

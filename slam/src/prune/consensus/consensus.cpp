@@ -6,6 +6,7 @@
 
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/statistics.hpp"
+#include "prune/consensus/constants.hpp"
 #include "prune/consensus/judge.hpp"
 #include "prune/consensus/objective/own_frames.hpp"
 #include "prune/consensus/objective/scale_prior.hpp"

@@ -5,15 +5,14 @@
 #include <span>
 #include <utility>
 
+#include "prune/consensus/constants.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
 #include "prune/consensus/objective/loop_gain.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
 
-constexpr int kMostSteps = 12;        // of Gauss-Newton, weights included
-constexpr double kSameWeight = 0.05;  // of logs, root mean square
-constexpr double kHopeless = 50.0;  // log odds against, by a bound, beyond which none is solved for
+constexpr int kMostSteps = 12;  // of Gauss-Newton, weights included
 constexpr int kFixedPointSteps = 30;
 
 // Covariances, in times of a factorisation (measured).

@@ -11,12 +11,6 @@
 namespace isotherm::slam::detail {
 namespace {
 
-// Moves in a row that may find nothing better, or nothing that would lead in as many to the highest
-// peak of earlier climbs.
-constexpr int kPatience = 8;
-// Times as many loops have more to tell of how accurate they are.
-constexpr std::size_t kMoreTelling = 2;
-
 bool is_part(const std::vector<bool>& part, const std::vector<bool>& whole) {
   for (std::size_t k = 0; k < part.size(); ++k) {
     if (part[k] && !whole[k]) return false;

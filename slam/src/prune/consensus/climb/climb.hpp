@@ -10,6 +10,7 @@
 #include "prune/consensus/climb/assessment.hpp"
 #include "prune/consensus/climb/groups.hpp"
 #include "prune/consensus/climb/learn.hpp"
+#include "prune/consensus/constants.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -58,9 +59,6 @@ class Climb {
 
   using Layout = typename Estimate<Pose>::Layout;
   using Change = std::function<void(Explanation<Pose>&)>;
-
-  // Nats by which an explanation must be better to go on.
-  static constexpr double kBetter = 0.1;
 
   // Where a climb was, and the number of the peak that it led to; of this one that of the next.
   struct Passed {

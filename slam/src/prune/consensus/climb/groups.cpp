@@ -5,18 +5,11 @@
 #include <numeric>
 
 #include "graph/find_root.hpp"
+#include "prune/consensus/constants.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
-
-// Groups accepted at once are all true with even odds at least, or false as rarely as one in many
-// of those in force, of which each move drops what does not fit.
-constexpr double kMostExpectedFalse = 0.5;
-constexpr double kFalseShare = 1e-3;
-
-// Every loop accepted sharpens what is predicted of the rest and tells how accurate they are.
-constexpr std::size_t kGrowth = 10;
 
 // Parents of a forest for find_root().
 std::vector<Index> each_by_itself(std::size_t count) {
@@ -93,7 +86,7 @@ Group most_certain(std::vector<Group> groups, std::size_t accepted) {
   for (const auto& [members, gain, parts] : groups) {
     expected_false += probability_of(-gain);
     const bool many =
-        all.loops.size() + members.size() > kGrowth * std::max<std::size_t>(accepted, 1);
+        all.loops.size() + members.size() > kBatchGrowth * std::max<std::size_t>(accepted, 1);
     if (!all.loops.empty() && (many || expected_false > most_false)) break;
     if (parts.first != parts.second) {
       const Index first = find_root(part, parts.first);

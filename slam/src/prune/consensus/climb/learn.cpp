@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "prune/consensus/constants.hpp"
 #include "prune/consensus/objective/scale_prior.hpp"
 
 namespace isotherm::slam::detail {

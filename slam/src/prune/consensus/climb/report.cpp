@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "prune/consensus/constants.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
 #include "prune/consensus/objective/log_sum.hpp"
 

@@ -8,9 +8,6 @@
 
 namespace isotherm::slam::detail {
 
-/// Fewer loops say too little of how accurate odometry is for one of them to be pruned.
-inline constexpr std::size_t kFewLoops = 5;
-
 /// What the odds of a loop make of it, under an explanation that has `accepted` it or not. Without
 /// `refutable` nothing can speak against it.
 spectral::Verdict verdict_of(bool accepted, double log_odds, double decisive, bool refutable);

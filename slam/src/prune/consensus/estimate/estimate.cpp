@@ -8,13 +8,12 @@
 #include "isotherm/spectral/sparse/block_covariance.hpp"
 #include "isotherm/spectral/sparse/covariance_work.hpp"
 #include "isotherm/spectral/sparse/earlier_factor.hpp"
+#include "prune/consensus/constants.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
 
-// Steps below this many standard deviations of the links they move do not matter; what those below
-// one leave is of second order.
-constexpr double kSettled = 0.01;
+// What steps below this many standard deviations of the links they move leave is of second order.
 constexpr double kNear = 1.0;
 
 // Operations of a factorisation that take as long as to linearise one link (measured).

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "prune/consensus/constants.hpp"
+
 namespace isotherm::slam::detail {
 namespace {
 
@@ -16,9 +18,6 @@ template <class Pose>
 constexpr double rotation_volume() {
   return Pose::kDim == 2 ? 2.0 * kPi : 8.0 * kPi * kPi;
 }
-
-// Thin maps are given some thickness: false loops leave the plane of the map.
-constexpr double kLeastAspect = 0.05;
 
 // A map of one point has no size; any positive one serves.
 constexpr double kLeastExtent = 1e-3;

@@ -4,14 +4,15 @@
 #include <cmath>
 #include <numeric>
 
+#include "prune/consensus/constants.hpp"
+
 namespace isotherm::slam::detail {
 namespace {
 
-// Of variances, from one scale to the next.
-constexpr double kStep = 3.0;
-constexpr double kWorst = kStep * kStep;
+constexpr double kWorst = kScaleStep * kScaleStep;
 constexpr double kNever = -1e9;  // log of no probability
-constexpr ByScale kPriorLoops = {1.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
+constexpr double kOther = kLoopsBefore / 3.0;
+constexpr ByScale kPriorLoops = {kLoopsBefore, kOther, kOther, kOther};
 
 // log (x (x + 1) ... (x + count - 1)), and between whole counts their mean: of all distributions of
 // a count with this mean, that has the least.
@@ -38,17 +39,17 @@ double ScaleShares::log_evidence() const {
 }
 
 bool are_of_different_scales(double weight, double other) {
-  return std::max(weight, other) >= kStep * std::min(weight, other);
+  return std::max(weight, other) >= kScaleStep * std::min(weight, other);
 }
 
 ScaleShift wider_most(const ScaleShares& shares) {
   const auto& [most, worse, worst, stated] = shares.loops;
-  return {kStep, {{most + worse, worst, 0.0, stated}}};
+  return {kScaleStep, {{most + worse, worst, 0.0, stated}}};
 }
 
 ScaleShift sharper_most(const ScaleShares& shares) {
   const auto& [most, worse, worst, stated] = shares.loops;
-  return {1.0 / kStep, {{0.5 * most, 0.5 * most, worse + worst, stated}}};
+  return {1.0 / kScaleStep, {{0.5 * most, 0.5 * most, worse + worst, stated}}};
 }
 
 ScaleShift all_as_worst(const ScaleShares& shares) {
@@ -58,7 +59,7 @@ ScaleShift all_as_worst(const ScaleShares& shares) {
 
 // What the file states is a scale of its own only beyond the worst of the others.
 ScaleMixture expected_mixture(double scale, const ScaleShares& shares) {
-  ScaleMixture mixture{.scale = scale, .relative = {1.0, kStep, kWorst, 1.0 / scale}};
+  ScaleMixture mixture{.scale = scale, .relative = {1.0, kScaleStep, kWorst, 1.0 / scale}};
   ByScale expected = kPriorLoops;
   for (std::size_t j = 0; j < kScaleCount; ++j) expected[j] += shares.loops[j];
   const double all = sum_of(expected);

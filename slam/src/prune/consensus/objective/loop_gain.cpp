@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "prune/consensus/constants.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
 
 namespace isotherm::slam::detail {
@@ -16,9 +17,8 @@ namespace {
 // A share of redundancy below this is rounding: only the loop itself measures there.
 constexpr double kLeastShare = 1e-6;
 
-// The integral over the log of a factor, in deviations: the trapezoidal rule to 2.8 of them.
+// Of the log of a factor: less is none, and from node to node of the integral.
 constexpr double kNoDeviation = 0.1;
-constexpr int kNodes = 4;  // on either side
 constexpr double kNodeStep = 0.7;
 
 using Nodes = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, 2 * kNodes + 1, 1>;

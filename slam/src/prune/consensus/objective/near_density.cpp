@@ -8,6 +8,7 @@
 
 #include "isotherm/base/random.hpp"
 #include "isotherm/base/statistics.hpp"
+#include "prune/consensus/constants.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
 #include "prune/consensus/pairs/loop_pair.hpp"
 
@@ -16,7 +17,6 @@ namespace {
 
 constexpr std::size_t kMostPlaces = 20000;
 constexpr std::size_t kMostWeighed = 50000;
-constexpr double kReach = 3.5;
 constexpr double kDeviationOfMad = 1.4826;  // of a normal distribution
 constexpr std::uint64_t kSeed = 1;
 

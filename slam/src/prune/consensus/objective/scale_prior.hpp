@@ -1,18 +1,16 @@
 #pragma once
 
 #include <cmath>
-#include <numbers>
 
 #include <Eigen/Core>
+
+#include "prune/consensus/constants.hpp"
 
 namespace isotherm::slam::detail {
 
 // How much more or less accurate measurements are than their file states: with even odds by one
 // factor on all variances, or by one on that of each coordinate, whose log is the sum of two
-// normal ones around zero, one of all coordinates and one of each.
-
-/// Deviation of each: that of a factor of ten in sigma.
-inline constexpr double kScaleDeviation = 2.0 * std::numbers::ln10;
+// normal ones around zero, one of all coordinates and one of each, of kScaleDeviation.
 
 /// Of the log of any factor, either way. Beyond, double precision has no digits left for the rest
 /// of the graph.

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <numbers>
+
+/// Every constant that consensus decides by: what it means, its unit, and where it comes from. What
+/// each is worth, on graphs that none was chosen on, is in docs/results/ablation.md. Constants that
+/// guard against rounding, bound repetitions or tell how long a step takes stand where they are
+/// used: they change no verdict.
+namespace isotherm::slam::detail {
+
+// The model.
+
+/// Deviation of the log of a factor on covariances, of all coordinates and of each: files are off
+/// by a factor of ten in the error as likely as not by more.
+inline constexpr double kScaleDeviation = 2.0 * std::numbers::ln10;
+
+/// Of variances, from one kind of loop to the next: a scale between two is off by a factor of 1.3
+/// in the error at most, of which a loop tells nothing.
+inline constexpr double kScaleStep = 3.0;
+
+/// Loops as accurate as most that count as seen before any is, and as many less accurate: of the
+/// share of either nothing is known (a uniform distribution).
+inline constexpr double kLoopsBefore = 1.0;
+
+/// Deviations to which the kernel of near pairs reaches: all but a thousandth of it.
+inline constexpr double kReach = 3.5;
+
+/// Of a map's least extent to its largest: false loops leave the plane of a flat map.
+inline constexpr double kLeastAspect = 0.05;
+
+/// Fewer loops say too little of how accurate odometry is for one of them to be pruned.
+inline constexpr std::size_t kFewLoops = 5;
+
+// The search.
+
+/// Factors on the stated covariances of odometry and of loops to start from. What is true agrees
+/// best: a climb that starts from sharper loops than stated is not drawn to false ones first.
+inline constexpr std::array<std::array<double, 2>, 4> kStarts = {
+    {{1.0, 1.0}, {100.0, 1.0}, {1.0, 0.01}, {0.01, 0.01}}};
+
+/// Nats by which an explanation must be better to go on: odds that nobody would act on.
+inline constexpr double kBetter = 0.1;
+
+/// Moves in a row that may find nothing better, or nothing that would lead in as many to the
+/// highest peak of earlier climbs.
+inline constexpr int kPatience = 8;
+
+/// Times as many loops as at the last lesson have more to tell of how accurate they are.
+inline constexpr std::size_t kMoreTelling = 2;
+
+/// Groups accepted at once are all true with even odds at least,
+inline constexpr double kMostExpectedFalse = 0.5;
+/// or false as rarely as one in so many of those in force, of which each move drops what does not
+/// fit.
+inline constexpr double kFalseShare = 1e-3;
+
+/// Times as many loops as before that are accepted at once: each sharpens what is predicted of the
+/// rest and tells how accurate they are.
+inline constexpr std::size_t kBatchGrowth = 10;
+
+// Accuracy.
+
+/// Steps below this many standard deviations of the links they move do not matter.
+inline constexpr double kSettled = 0.01;
+
+/// Changes of a loop's weight that do not matter: of logs, root mean square.
+inline constexpr double kSameWeight = 0.05;
+
+/// Nodes on either side for the integral over the log of a factor: to 2.8 deviations, by the
+/// trapezoidal rule.
+inline constexpr int kNodes = 4;
+
+/// Log odds against, by a bound, beyond which a loop's covariance is not solved for.
+inline constexpr double kHopeless = 50.0;
+
+}  // namespace isotherm::slam::detail
