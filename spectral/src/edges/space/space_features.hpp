@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "edges/odds/pair_features.hpp"
+#include "isotherm/spectral/graph/weighted_graph.hpp"
+
+namespace isotherm::spectral::detail {
+
+/// What is thought of the edges of a graph to begin with.
+struct FirstGuess {
+  std::span<const double> trust;  ///< edges that are likely false have none
+  double false_count = 0.0;
+};
+
+struct SpaceOptions {
+  std::uint64_t seed = 1;
+  int threads = 0;
+  ProgressCallback progress = {};
+};
+
+/// Log odds that a pair is not near, given all other edges and pairs without an edge, where each
+/// vertex has a place in space and near ones are joined (contact_graph.hpp).
+///
+/// Places are sampled several times (place_sampler.hpp), from those that steps along trusted edges
+/// suggest (classical_scaling.hpp).
+/// @param dimension 2 or 3
+/// @param lengths how many original edges each edge stands for
+/// @return nothing for graphs of fewer than ten vertices with an edge, or of some eight hundred and
+///   more, where it would take too long
+/// @throws Cancelled
+std::optional<Measured> space_features(const WeightedGraph& graph, std::span<const double> lengths,
+                                       int dimension, const FirstGuess& guess,
+                                       std::span<const VertexPair> pairs,
+                                       const SpaceOptions& options);
+
+}  // namespace isotherm::spectral::detail
