@@ -7,6 +7,7 @@
 #include "isotherm/base/output_group.hpp"
 #include "isotherm/base/text_writer.hpp"
 #include "json_file.hpp"
+#include "unsigned_flag.hpp"
 
 namespace isotherm::apps {
 namespace {
@@ -35,7 +36,7 @@ void add_common_flags(CLI::App& verb, CommonFlags& flags) {
   group(verb.add_flag("--dump-config", flags.dump_config,
                       "print the options in force as JSON and stop"));
   group(verb.add_flag("--strict", flags.strict, "treat every repair of the input as an error"));
-  group(verb.add_option("--seed", flags.seed, "seed of all random choices; in [0, 2^64)")
+  group(add_unsigned(verb, "--seed", flags.seed, "seed of all random choices")
             ->capture_default_str());
   group(add_number(verb, "--threads", flags.threads,
                    "threads to use, at most one a core; 0: all cores", closed(0, kMostThreads))

@@ -20,12 +20,9 @@ std::atomic<bool> asked_to_stop{false};
 std::atomic_flag said = ATOMIC_FLAG_INIT;
 static_assert(std::atomic<bool>::is_always_lock_free, "is used in signal handlers");
 
-// Files that are being named are complete, and so is the run.
+// Files that are being named, or have been, are complete, and so is the run: it ends by itself.
 void end_now(int) {
-  if (outputs_taking_place()) {
-    ::alarm(kGraceSeconds);
-    return;
-  }
+  if (outputs_in_place()) return;
   say_interrupted();
   abandon_outputs();
   ::_exit(kInterrupted);

@@ -577,11 +577,10 @@ errors of a foot for outliers only harms.
 
 The files of MDjeep imitate sensor networks in space without anchors: the shortest
 distances are exact to the digits written, all others intervals 0.1 wide. An interval counts
-as a range in its middle with the deviation of a uniform law. sensor056 has 6.8 ranges a node, and
-no five of its nodes have all ranges between them, which is where firm sets begin in space: nothing
-is localised. That is less than there is to be had, as it is of sensor103. The 55 nodes with at least four ranges have one
+as a range in its middle with the deviation of a uniform law. sensor056 has 6.8 ranges a node: nothing
+is localised. That is less than there is to be had. The 55 nodes with at least four ranges have one
 place by the generic criterion (the rank of a stress matrix is 55 - 4; counted apart from the
-script), but no small part of them does.
+script).
 
 """
 

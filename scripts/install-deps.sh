@@ -9,8 +9,9 @@ packages=(
   # libraries
   libboost-dev libcgal-dev libeigen3-dev libspectra-dev libsuitesparse-dev libtbb-dev zlib1g-dev
   libfast-float-dev libnanoflann-dev libcli11-dev nlohmann-json3-dev libfmt-dev
-  # dense kernels, also for CHOLMOD; several times as fast as the reference ones
-  libblas-dev libopenblas0-serial
+  # dense kernels, also for CHOLMOD; several times as fast as the reference ones. The -serial one
+  # gives wrong products when two threads call it at a time.
+  libblas-dev libopenblas0-pthread
   # tests
   libgtest-dev libgmock-dev python3
   # benchmarks

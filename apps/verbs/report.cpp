@@ -8,6 +8,7 @@
 #include "report/report_check.hpp"
 #include "report/report_flags.hpp"
 #include "report/report_json.hpp"
+#include "report/report_page.hpp"
 #include "verbs/verbs.hpp"
 
 namespace isotherm::apps {
@@ -35,14 +36,13 @@ struct ReportVerb : OptionVerb<NoOptions> {
 
   int run() {
     if (resolve_or_dump()) return kOk;
-    if (inputs.size() == 1) {
-      write_report_document(output, read_document(inputs[0]));
-      return kOk;
-    }
-    if (format_suffix(output) == ".json") {
+    const bool one = inputs.size() == 1;
+    if (!one && format_suffix(output) == ".json") {
       throw InvalidArgument("output", "two reports are compared on a page: name it .html");
     }
-    write_report_document(output, compared(inputs));
+    const Json document = one ? read_document(inputs[0]) : compared(inputs);
+    write_report_document(output, document);
+    if (!flags.json.empty()) write_text(flags.json, report_text(document) + "\n");
     return kOk;
   }
 };

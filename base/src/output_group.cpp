@@ -15,13 +15,7 @@ struct OutputGroup::State {
 namespace {
 
 thread_local OutputGroup* current_group = nullptr;
-std::atomic<bool> taking_place{false};
-
-// Also where a name cannot be given.
-struct TakingPlace {
-  TakingPlace() { taking_place = true; }
-  ~TakingPlace() { taking_place = false; }
-};
+std::atomic<bool> in_place{false};
 
 }  // namespace
 
@@ -36,11 +30,17 @@ bool OutputGroup::take(detail::TemporaryFile& file) {
 }
 
 void OutputGroup::commit() {
-  const TakingPlace guard;
-  for (auto& file : state_->files) file.take_place();
+  if (state_->files.empty()) return;
+  in_place = true;
+  try {
+    for (auto& file : state_->files) file.take_place();
+  } catch (...) {
+    in_place = false;
+    throw;
+  }
   state_->files.clear();
 }
 
-bool outputs_taking_place() noexcept { return taking_place; }
+bool outputs_in_place() noexcept { return in_place; }
 
 }  // namespace isotherm

@@ -48,10 +48,17 @@ std::string output_target(const std::string& path) {
   return problem ? path : target.string();
 }
 
+bool is_endless_link(const std::string& path) {
+  std::error_code problem;
+  static_cast<void>(fs::status(path, problem));
+  return problem == std::errc::too_many_symbolic_link_levels;
+}
+
 void require_writable(const std::string& path) {
   if (path.empty()) throw FileError(path, "cannot be written: empty name");
   if (path == "-") return require_writable_stdout();
   std::error_code ignored;
+  if (is_endless_link(path)) fail(path, ELOOP);
   const auto status = fs::status(path, ignored);
   if (fs::is_directory(status)) fail(path, EISDIR);
   const bool in_place = fs::exists(status) && !fs::is_regular_file(status);

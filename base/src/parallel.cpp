@@ -10,6 +10,7 @@
 #include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include "isotherm/base/blas_threads.hpp"
 #include "isotherm/base/error.hpp"
 
 namespace isotherm {
@@ -18,8 +19,10 @@ namespace detail {
 namespace tbb = oneapi::tbb;
 using Range = tbb::blocked_range<std::int64_t>;
 
-// More threads than the machine runs at once would only make TBB complain.
+// More threads than the machine runs at once would only make TBB complain, and bodies may call the
+// BLAS.
 int usable(int threads) {
+  if (!blas_serves_threads()) return 1;
   return threads > 0 ? std::min(threads, tbb::info::default_concurrency())
                      : tbb::task_arena::automatic;
 }
@@ -46,7 +49,7 @@ void parallel_by_slot(std::int64_t count, std::size_t grain, int threads,
       if (!progress({stage, finished, static_cast<std::uint64_t>(count)})) cancelled = true;
     }
   };
-  if (threads == 1 || count <= 1) {  // without the cost of an arena
+  if (usable(threads) == 1 || count <= 1) {  // without the cost of an arena
     const auto step = static_cast<std::int64_t>(grain);
     for (std::int64_t begin = 0; begin < count && !cancelled; begin += step) {
       run(0, Range(begin, std::min(begin + step, count)));

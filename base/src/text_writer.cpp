@@ -53,6 +53,10 @@ struct OutputFile::State {
 
   int open_descriptor() {
     if (path == "-") return ::dup(STDOUT_FILENO);
+    if (is_endless_link(path)) {
+      errno = ELOOP;
+      return -1;
+    }
     std::error_code ignored;
     const auto status = fs::status(path, ignored);
     if (fs::exists(status) && !fs::is_regular_file(status)) return ::open(path.c_str(), O_WRONLY);

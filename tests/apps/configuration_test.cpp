@@ -102,16 +102,17 @@ TEST_F(Configuration, EveryNumberHasARangeThatHelpStates) {
                                 "simulate city",
                                 "simulate network",
                                 "simulate sphere",
-                                "eval rpe"};
+                                "eval rpe",
+                                "follow"};
   for (const std::string verb : kVerbs) {
     std::istringstream lines(run_ok(verb + " --help"));
     std::string entry;
     const auto check = [&] {
       const bool number =
-          entry.find(" INT") != std::string::npos || entry.find(" FLOAT") != std::string::npos;
+          entry.find("INT") != std::string::npos || entry.find(" FLOAT") != std::string::npos;
       const bool named = entry.find(":{") != std::string::npos;
       if (!number || named) return;
-      EXPECT_THAT(entry, testing::ContainsRegex("in *[[(][-0-9.e+]+, *[-0-9.e+]+[])]")) << verb;
+      EXPECT_THAT(entry, testing::ContainsRegex("in *[[(][-0-9.e+]+, *[-0-9.e+^]+[])]")) << verb;
     };
     for (std::string line; std::getline(lines, line);) {
       if (line.starts_with("  -")) {
@@ -144,6 +145,8 @@ TEST_F(Configuration, RangesAreEnforced) {
       "label x --ground-truth x -o out --max-gap -1",
       "eval ate x x --max-gap nan",
       "corrupt x -o out --count 5 --group-size -1",
+      "prune x --seed -1",
+      "follow x --map out --every -1",
   };
   for (const std::string wrong : kWrong) {
     const auto result = run(wrong);

@@ -115,15 +115,15 @@ TEST_F(Doubts, OdometryMissingOrOutOfOrder) {
 }
 
 TEST_F(Doubts, AResultWithoutLoopsNamesLikelyCauses) {
-  // Loops that all claim to be exact, which consensus sees through.
+  // Edges that all claim to be exact, which consensus sees through.
   const auto claim = [](Fields& fields) {
     if (!is_edge(fields)) return;
-    for (const std::size_t k : {6, 9, 11}) fields[k] += "0000000";
+    for (const std::size_t k : {6, 9, 11}) fields[k] += "e7";
   };
   EXPECT_THAT(said_of(claim, "chi2"),
               HasSubstr(" of 200 loops are pruned. If most of them should be true: "));
   const auto seen_through = said_of(claim);
-  EXPECT_THAT(seen_through, testing::ContainsRegex("19[0-9] kept, [01] pruned|200 kept"));
+  EXPECT_THAT(seen_through, HasSubstr("200 kept, 0 pruned"));
   EXPECT_THAT(seen_through, HasSubstr("says nothing"));
 }
 

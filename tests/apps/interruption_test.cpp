@@ -121,4 +121,25 @@ TEST_F(Interruption, ASecondSignalEndsAtOnce) {
   expect_untouched("twice");
 }
 
+// Between the naming of its files and the end of the process.
+TEST_F(Interruption, ComesTooLateOnceOutputsAreThere) {
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    execl(ISOTHERM_COMMAND, "isotherm", "simulate", "city", "--poses", "100000", "-q", "-o",
+          file("late").c_str(), static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  int status = 0;
+  bool ended = false;
+  while (!ended && !fs::exists(folder / "late")) ended = waitpid(child, &status, WNOHANG) == child;
+  if (!ended) {
+    kill(child, SIGINT);
+    kill(child, SIGINT);
+    waitpid(child, &status, 0);
+  }
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
 }  // namespace

@@ -81,6 +81,8 @@ TEST_F(Outputs, HaveNamesThatDiffer) {
   expect_refused("prune in.g2o --json ''", 2, "--json: needs the name of a file");
   expect_refused("prune in.g2o -o x --verdicts ./x", 2, "names the same file as --output");
   expect_refused("prune in.g2o -o - --json -", 2, "names the same file");
+  expect_refused("follow in.g2o --map x --every 9 -o ./x", 2, "names the same file");
+  expect_refused("follow in.g2o --state x --json x", 2, "names the same file");
   fs::create_symlink("x", folder / "link");
   EXPECT_THAT(run("prune in.g2o -o x --verdicts link").err, HasSubstr("names the same file"));
   run_ok("prune in.g2o -o link -q");

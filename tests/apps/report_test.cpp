@@ -115,6 +115,9 @@ TEST_F(Report, PageIsWhatTheSavedDocumentMakes) {
   EXPECT_THAT(page, HasSubstr("default-src 'none'"));
   EXPECT_THAT(page, HasSubstr("isotherm.report/1"));
   EXPECT_THAT(page, Not(HasSubstr("__ISOTHERM_REPORT__")));
+  run_ok("report report.json -o page.html --json again.json");
+  EXPECT_EQ(Json::parse(read_text(folder / "again.json")),
+            Json::parse(read_text(folder / "report.json")));
 }
 
 TEST_F(Report, HostileNamesCannotLeaveTheData) {

@@ -53,6 +53,15 @@ TEST(OutputFile, ReplacesTheFileALinkPointsTo) {
   EXPECT_EQ(read_file(folder / "real"), "new");
 }
 
+TEST(OutputFile, DoesNotReplaceALinkThatLeadsBackToItself) {
+  const TemporaryFolder folder;
+  fs::create_symlink("second", folder / "first");
+  fs::create_symlink("first", folder / "second");
+  EXPECT_THROW(require_writable(folder / "first"), FileError);
+  EXPECT_THROW(OutputFile(folder / "first"), FileError);
+  EXPECT_TRUE(fs::is_symlink(folder / "first"));
+}
+
 TEST(OutputFile, MakesTheFileADanglingLinkPointsTo) {
   const TemporaryFolder folder;
   fs::create_symlink("second", folder / "first");

@@ -42,6 +42,7 @@ VERBS = {  # the verb and its positional arguments, and what it may write
     "eval rpe": ["GRAPH", "truth.g2o"],
     "eval ate": ["GRAPH", "truth.g2o"],
     "info": ["GRAPH"],
+    "follow": ["GRAPH"],
 }
 FILES = {"GRAPH": ["city.g2o", "sphere.g2o", "pair.g2o"], "PLAIN": ["graph.csv", "cloud.csv"],
          "RANGES": ["ranges.csv"]}
@@ -58,7 +59,8 @@ class Option:
 
     def __init__(self, flag, kind, text):
         self.flag, self.kind = flag, kind
-        found = re.search(r"in ([\[(])([-+.e\d]+), ([-+.e\d]+)([\])])", text)
+        found = re.search(r"in ([\[(])([-+.e\d]+), ([-+.e\d]+)([\])])",
+                          text.replace("2^64", str(2 ** 64)))
         self.range = (float(found[2]), float(found[3]), found[1], found[4]) if found else None
 
     def inside(self, rng):

@@ -14,7 +14,7 @@ FAULTS = {
     "a circle of rooms": ("spectral/src/graph/planted.cpp",
                           '#include "heat/heat_engine.hpp"\n', "against the order of spectral"),
     "a circle below a room": ("network/src/localize/problem/planted.hpp",
-                              '#include "localize/grow/grow.hpp"\n',
+                              '#include "localize/firm/firmness.hpp"\n',
                               "against the order of network/localize"),
     "a room that nobody ordered": ("slam/src/prune/planted/planted.cpp",
                                    '#include "graph/gauge.hpp"\n#include "prune/pcm/max_clique.hpp"\n',

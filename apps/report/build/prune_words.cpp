@@ -64,9 +64,9 @@ std::string words_of_scales(const ConsensusResult& result) {
       "the file states, those of rotation against translation {:.3g} times.",
       std::sqrt(result.odometry_scale), std::sqrt(result.loop_scale),
       std::sqrt(result.rotation_scale));
-  if (result.loop_scale < 1.0 && result.share_as_stated > 0.0) {
-    text += fmt::format(" About {:.0f} % of the loops are only as accurate as stated.",
-                        100.0 * result.share_as_stated);
+  if (result.share_of_worse >= 0.005) {
+    text += fmt::format(" About {:.0f} % of the loops are less accurate than most.",
+                        100.0 * result.share_of_worse);
   }
   return text + words_of_scale("the accuracy of odometry", result.odometry_scale) +
          words_of_scale("the accuracy of loops", result.loop_scale) +

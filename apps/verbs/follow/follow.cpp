@@ -16,6 +16,7 @@
 #include "isotherm/slam/io/pose_graph_stream.hpp"
 #include "isotherm/slam/online/online_consensus.hpp"
 #include "option_verb.hpp"
+#include "unsigned_flag.hpp"
 #include "verbs/follow/call_times.hpp"
 #include "verbs/follow/error_track.hpp"
 #include "verbs/follow/event_lines.hpp"
@@ -237,14 +238,12 @@ Verb add_follow(CLI::App& root) {
   outputs.add(*verb, "--events", follow->events,
               "a JSON line for every verdict that is new or changed (- for stdout, the default)",
               {});
-  verb->add_option("--state", follow->state,
-                   "file that keeps what has come; a run that was ended goes on from it")
-      ->type_name("FILE");
-  verb->add_option("--map", follow->map, "g2o file to write the present map to, time and again")
-      ->type_name("FILE");
-  verb->add_option("--every", follow->every,
-                   "edges after which it is written again, and held against the truth")
-      ->type_name("N");
+  outputs.add(*verb, "--state", follow->state,
+              "file that keeps what has come; a run that was ended goes on from it", {});
+  outputs.add(*verb, "--map", follow->map, "g2o file to write the present map to, time and again",
+              {".g2o"});
+  add_unsigned(*verb, "--every", follow->every,
+               "edges after which it is written again, and held against the truth");
   outputs.add(*verb, "--times", follow->times, "how long each call took, as CSV", {".csv"});
   verb->add_option("--ground-truth", follow->truth.path,
                    "pose graph or trajectory taken as true: the error of the map is an event, too")

@@ -45,7 +45,7 @@ Json to_json(const ConsensusResult& result, const spectral::EdgeVerdicts& verdic
                {"odometry_scales", result.odometry_scales},
                {"loop_scales", result.loop_scales},
                {"rotation_scale", result.rotation_scale},
-               {"share_as_stated", result.share_as_stated},
+               {"share_of_worse", result.share_of_worse},
                {"settled", result.settled},
                {"moves", Json::array()},
                {"loops", Json::array()}};

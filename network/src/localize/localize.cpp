@@ -15,7 +15,7 @@
 #include "localize/refine/range_information.hpp"
 #include "localize/refine/robust_refine.hpp"
 #include "localize/refine/weigh_ranges.hpp"
-#include "localize/start/initial_placement.hpp"
+#include "localize/start/search.hpp"
 
 namespace isotherm::network {
 namespace {
@@ -38,8 +38,8 @@ class Localization {
         gate_(chi_squared_quantile(1.0 - options.significance, 1)) {}
 
   LocalizeResult run() {
-    trusted_ = detail::trusted_pairs(problem_, options_);
-    placement_ = detail::place_initially(problem_, anchors_, trusted_, gate_, options_);
+    trusted_ = detail::likely_pairs(problem_, options_.heat_chance, options_);
+    placement_ = detail::search_map(problem_, anchors_, trusted_, gate_, options_);
     if (options_.method == LocalizeMethod::robust) {
       use_ = detail::ranges_within(problem_, placement_, gate_);
       decide();
@@ -76,8 +76,10 @@ class Localization {
     constexpr int kMostRounds = 10;
     for (int round = 0; round < kMostRounds; ++round) {
       ++result_.rounds;
-      weighed_ = round == 0 ? detail::weigh_ranges(problem_, options_, placement_)
-                            : detail::weigh_ranges_again(problem_, options_, weighed_, placement_);
+      const auto absence = detail::Absence::learn(problem_, trusted_, placement_);
+      weighed_ = round == 0 ? detail::weigh_ranges(problem_, absence, options_, placement_)
+                            : detail::weigh_ranges_again(problem_, absence, options_, weighed_,
+                                                         placement_);
       judge_placed();
       if (!update_noise()) return;
     }

@@ -253,7 +253,7 @@ void OnlineEngine<Pose>::judge_run(Index edge) {
     row.score = -log_odds;
     row.threshold = log_odds_of(1.0 - options_.consensus.significance);
     row.verdict = verdict_of(accepted, log_odds, row.threshold, many && standing.connected());
-    row.probability = 1.0 / (1.0 + std::exp(-log_odds));
+    row.probability = probability_of(log_odds);
     row.stage = stage_of(accepted, standing.connected());
     auto reason =
         accepted && together ? reason_together(standing.chi2) : reason_of(row, standing.chi2);

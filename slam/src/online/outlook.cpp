@@ -137,9 +137,10 @@ Standing Outlook<Pose>::standing(Index edge) const {
   if (!path && a && b && a->part == b->part) path = between(*a, *b);
   if (path) {
     const typename Pose::Tangent r = (measured.T_from_to.inverse() * path->T).log();
-    const auto gain =
-        loop_gain<Pose>(predict<Pose>(r, path->covariance, Sigma), assessment.findings().mixture,
-                        map_.objective().scale_deviation(best.redundancy));
+    const Matrix J = residual_jacobian<Pose>(r);
+    const auto prediction = predict<Pose>(r, J * path->covariance * J.transpose(), Sigma);
+    const auto gain = loop_gain<Pose>(prediction, assessment.findings().mixture,
+                                      map_.objective().scale_deviation(best.redundancy));
     standing.chi2 = gain.chi2;
     density = gain.log_density;
   } else {

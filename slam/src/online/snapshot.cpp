@@ -121,9 +121,8 @@ typename Snapshot<Pose>::Standpoint Snapshot<Pose>::carry(const Snapshot& other)
     now.accepted.push_back(old && before.accepted[j]);
     now.weights.push_back(old ? before.weights[j] : 1.0);
     found.held.push_back(old ? known.held[j] : 0.0);
-    found.covariances.push_back(
-        old ? known.covariances[j]
-            : (found.graph->reduced.odometry_covariance[k] * before.scale.odometry).eval());
+    found.covariances.push_back(old ? known.covariances[j]
+                                    : Pose::Matrix::Zero());  // not known yet
   }
   carry_layout(other, now.layout);
   return {std::move(now), std::move(found)};

@@ -45,6 +45,9 @@ class NormalEquations {
                   const std::vector<std::pair<Index, Index>>& couplings,
                   spectral::FactorForm form = spectral::FactorForm::fastest);
 
+  /// Takes measurements and their information from the same graph with other ones.
+  void measure(const PoseGraph<Pose>& graph) { edges_ = edges_of(graph, gauge_); }
+
   const Gauge& gauge() const noexcept { return gauge_; }
   Index constraint_count() const noexcept { return static_cast<Index>(edges_.size()); }
 

@@ -159,10 +159,7 @@ detail::Supernodes BlockCholesky::supernodes() const {
   if (form_ != FactorForm::supernodal) {
     throw InvalidArgument("form", "the factor was not asked to be supernodal");
   }
-  if (block_count() == 0) return {};
-  const detail::Supernodes supernodes = factor_->supernodes();
-  if (supernodes.values.empty()) throw NumericalError("cholesky", "covariances without a factor");
-  return supernodes;
+  return block_count() == 0 ? detail::Supernodes{} : factor_->supernodes();
 }
 
 }  // namespace isotherm::spectral

@@ -6,6 +6,7 @@
 
 #include <cholmod.h>
 
+#include "isotherm/base/blas_threads.hpp"
 #include "isotherm/base/error.hpp"
 #include "sparse/find_supernodes.hpp"
 
@@ -17,6 +18,11 @@ constexpr bool kSupernodalModule = true;
 #else
 constexpr bool kSupernodalModule = false;
 #endif
+
+// Parts with fewer nodes are ordered by minimum degree. Of 4, 50, 200 and 1,000 this gives the
+// fewest operations in cities, spheres and grids of 10^5 poses, or within 2 % of them; METIS's own
+// order takes from 1 % less to 11 % more.
+constexpr std::size_t kSmallestDissected = 200;
 
 cholmod_sparse view_of(const LowerTriangle& matrix) {
   cholmod_sparse view = {};
@@ -59,6 +65,7 @@ struct Workspace {
   cholmod_common common = {};
 
   Workspace() {
+    isotherm::detail::blas_serves_threads();  // makes it use one a call
     cholmod_start(&common);
     common.print = 0;
     common.error_handler = nullptr;
@@ -257,7 +264,8 @@ std::vector<Index> fill_reducing_order(const LowerTriangle& pattern) {
   auto& common = workspace.common;
   common.nmethods = 2;
   common.method[0].ordering = CHOLMOD_AMD;
-  common.method[1].ordering = CHOLMOD_METIS;
+  common.method[1].ordering = CHOLMOD_NESDIS;
+  common.method[1].nd_small = kSmallestDissected;
   common.supernodal = CHOLMOD_SIMPLICIAL;
   cholmod_sparse view = view_of(pattern);
   cholmod_factor* symbolic = cholmod_analyze(&view, &common);

@@ -23,6 +23,16 @@ void add_transposed_product(DenseView C, double scale, const ConstDenseView& A,
 void add_transposed_product(ComplexView C, double scale, const ConstComplexView& A,
                             const ConstComplexView& B);
 
+/// C += scale * A' B where that and C are symmetric: half the work of the general product.
+void add_symmetric_product(DenseView C, double scale, const ConstDenseView& A,
+                           const ConstDenseView& B);
+
+void add_symmetric_product(ComplexView C, double scale, const ConstComplexView& A,
+                           const ConstComplexView& B);
+
+/// (L L')^-1, in the place of L, of which the lower triangle is used. 2/3 n^3 operations.
+void invert_from_factor(DenseView L);
+
 /// X = L^-1 X, of which the lower triangle of L is used.
 void solve_lower(const ConstDenseView& L, DenseView X);
 

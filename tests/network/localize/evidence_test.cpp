@@ -1,13 +1,14 @@
 #include "localize/evidence/evidence.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "isotherm/base/random.hpp"
 #include "isotherm/network/simulate/simulate_network.hpp"
 #include "localize/evidence/crowd.hpp"
-#include "localize/evidence/multilateration.hpp"
 #include "localize/evidence/star.hpp"
-#include "localize/firm/hinge_parts.hpp"
 #include "network/localize/networks.hpp"
 #include "network/localize/range_problems.hpp"
 
@@ -53,21 +54,23 @@ TEST(Absence, CostsWithinTheRadiusOfADiscAndNotBeyond) {
   EXPECT_NEAR(absence.reach(), 0.1, 0.015);
 }
 
+TEST(Absence, ItsSlopeIsTheDerivativeOfItsCost) {
+  const auto points = random_points(400, 1);
+  const auto problem = make_problem(disc_network(points, 0.1, 0.9));
+  const auto absence = Absence::learn(problem, all_of(problem), at(problem, points));
+  constexpr double kStep = 1e-7;
+  for (double distance = 0.0013; distance < 0.2; distance += 0.0031) {
+    const double rise = absence.cost(distance + kStep) - absence.cost(distance - kStep);
+    EXPECT_NEAR(absence.slope(distance), rise / (2.0 * kStep), 1e-4) << distance;
+  }
+}
+
 TEST(Absence, SaysNothingWhereFewHaveARange) {
   const auto points = random_points(400, 2);
   const auto problem = make_problem(disc_network(points, 0.15, 0.3));
   const auto absence = Absence::learn(problem, all_of(problem), at(problem, points));
   EXPECT_EQ(absence.reach(), 0.0);
   EXPECT_EQ(absence.cost(0.05), 0.0);
-}
-
-TEST(Absence, IsLearnedFromLocalMapsToo) {
-  const auto points = random_points(300, 3);
-  const auto problem = make_problem(disc_network(points, 0.12, 1.0));
-  const auto patches = make_patches(problem, all_of(problem), {});
-  const auto absence = Absence::learn(problem, all_of(problem), patches);
-  EXPECT_GT(absence.cost(0.06), 4.0);
-  EXPECT_EQ(absence.cost(0.15), 0.0);
 }
 
 TEST(Absence, OfNothingIsNothing) {
@@ -80,21 +83,65 @@ TEST(Absence, OfNothingIsNothing) {
   EXPECT_EQ(Absence::learn(heap, all_of(heap), at(heap, same)).reach(), 0.0);
 }
 
-TEST(Evidence, KnowsOnWhichSideRangesErr) {
+TEST(RangeCost, IsThatOfTheLikeliestKind) {
+  const Evidence evidence = {{.share = {0.7, 0.2, 0.1}, .excess = 0.5, .longest = 4.0}, {}};
+  constexpr double kSigma = 0.1;
+  const auto cost = evidence.cost_of(kSigma);
+  const double peak = 0.7 / (kSigma * std::sqrt(2.0 * M_PI));
+  for (double residual = -30.0; residual <= 30.0; residual += 0.37) {
+    const double normal = peak * std::exp(-0.5 * residual * residual);
+    const double excess = -residual * kSigma;
+    const double too_long = excess < 0.0 ? 0.0 : 0.2 / 0.5 * std::exp(-excess / 0.5);
+    const double density = std::max({normal, too_long, 0.1 / 4.0});
+    EXPECT_NEAR(cost(residual), 2.0 * std::log(peak / density), 1e-9) << residual;
+  }
+}
+
+TEST(RangeCost, SaysHowFarOffARangeMayBe) {
+  const Evidence evidence = {{.share = {0.7, 0.2, 0.1}, .excess = 0.5, .longest = 4.0}, {}};
+  const auto cost = evidence.cost_of(0.1);
+  for (const double most : {0.5, 2.0, 0.5 * (cost.too_long + cost.anything)}) {
+    EXPECT_NEAR(cost(cost.apart_at(most)), most, 1e-9);
+    EXPECT_NEAR(cost(-cost.close_at(most)), most, 1e-9);
+  }
+  EXPECT_TRUE(std::isinf(cost.apart_at(cost.anything)));
+  EXPECT_TRUE(std::isinf(cost.close_at(cost.anything)));
+}
+
+TEST(Evidence, KnowsTheKindsOfRange) {
   auto simulated =
       simulate_network({.nodes = 300, .degree = 15.0, .biased_fraction = 0.2, .seed = 5});
-  const auto problem = make_problem(simulated.network);
-  const auto long_ones =
-      learn_evidence(problem, all_of(problem), kGate, at(problem, simulated.truth));
-  EXPECT_GT(long_ones.limits.apart, long_ones.limits.close + 5.0);
-  const auto patches = make_patches(problem, all_of(problem), {});
-  const auto local = learn_evidence(problem, all_of(problem), kGate, patches);
-  EXPECT_GT(local.limits.apart, local.limits.close + 3.0);
+  const auto biased = make_problem(simulated.network);
+  const auto long_ones = learn_evidence(biased, all_of(biased), at(biased, simulated.truth));
+  EXPECT_NEAR(long_ones.model.share[kTooLong], 0.2, 0.05);
 
   simulated = simulate_network({.nodes = 300, .degree = 15.0, .false_fraction = 0.2, .seed = 5});
   const auto other = make_problem(simulated.network);
-  const auto short_ones = learn_evidence(other, all_of(other), kGate, at(other, simulated.truth));
-  EXPECT_LT(short_ones.limits.apart, short_ones.limits.close);
+  const auto false_ones = learn_evidence(other, all_of(other), at(other, simulated.truth));
+  EXPECT_NEAR(false_ones.model.share[kAnything], 0.2, 0.05);
+  EXPECT_LT(false_ones.model.share[kTooLong], 0.05);
+}
+
+TEST(Worth, IsHighestAtTheTruth) {
+  const auto simulated =
+      simulate_network({.nodes = 200, .degree = 15.0, .false_fraction = 0.2, .seed = 7});
+  const auto problem = make_problem(simulated.network);
+  const auto trusted = all_of(problem);
+  const double best = worth(problem, trusted, at(problem, simulated.truth));
+  auto moved = at(problem, simulated.truth);
+  Index most = 0;  // the node with the most ranges
+  for (Index v = 0; v < problem.nodes; ++v) {
+    if (problem.pair_graph.neighbours(v).size() > problem.pair_graph.neighbours(most).size())
+      most = v;
+  }
+  moved.positions.col(most).x() += simulated.radius;
+  EXPECT_LT(worth(problem, trusted, moved), best);
+  moved.placed[most] = false;
+  EXPECT_LT(worth(problem, trusted, moved), best);
+  // Rigid motions leave it as it is, but for the box around the nodes.
+  auto turned = at(problem, simulated.truth);
+  turned.positions = (turned.positions.colwise() + Eigen::Vector2d(3.0, -1.0)).eval();
+  EXPECT_NEAR(worth(problem, trusted, turned), best, 1e-6 * std::abs(best));
 }
 
 TEST(Crowd, CostsWhatAllPairsCost) {
@@ -131,33 +178,16 @@ TEST(Crowd, DecidesBetweenTwoPlacesOfANode) {
   placement.placed[3] = false;
   const auto absence = Absence::learn(problem, all_of(problem), placement);
   const Crowd crowd(problem, placement, absence);
-  auto place = star(problem, placement, 3);
-  const auto blind = multilaterate(place, {kGate, kGate});
+  const Evidence evidence = {{.share = {0.9, 0.0, 0.1}}, absence};
+  auto place = star(problem, evidence, placement, 3);
+  const auto blind = multilaterate(place);
   ASSERT_TRUE(blind);
   EXPECT_NEAR(blind->rival_cost - blind->cost, 0.0, 1e-9);
   crowd.add_strangers(place, 3, placement.placed);
-  const auto found = multilaterate(place, {kGate, kGate});
+  const auto found = multilaterate(place);
   ASSERT_TRUE(found);
   EXPECT_GT(found->rival_cost - found->cost, 3.0);
   EXPECT_LT((found->position - points.col(3)).norm(), 1e-6);
-}
-
-TEST(HingeParts, AreWhatHangsOnANeighbourhood) {
-  // A chain of triangles: without a node in the middle and its neighbours it falls in two.
-  constexpr int kNodes = 13;
-  std::vector<std::pair<int, int>> pairs;
-  for (int v = 0; v + 1 < kNodes; ++v) pairs.emplace_back(v, v + 1);
-  for (int v = 0; v + 2 < kNodes; ++v) pairs.emplace_back(v, v + 2);
-  const auto problem = make_problem(exact_network(random_points(kNodes, 8), pairs));
-  std::vector<bool> placed(kNodes, true);
-  const auto parts = parts_behind(problem, all_of(problem), placed, 6);
-  ASSERT_EQ(parts.size(), 2u);
-  EXPECT_EQ(parts[0].size() + parts[1].size(), 8u);
-  EXPECT_TRUE(parts[0] == (std::vector<Index>{0, 1, 2, 3}) ||
-              parts[1] == (std::vector<Index>{0, 1, 2, 3}));
-  placed[3] = placed[2] = placed[1] = false;
-  EXPECT_EQ(parts_behind(problem, all_of(problem), placed, 6).size(), 1u);
-  EXPECT_TRUE(parts_behind(problem, std::vector<bool>(pairs.size(), false), placed, 6).empty());
 }
 
 }  // namespace

@@ -8,32 +8,35 @@
 namespace isotherm::network::detail {
 namespace {
 
-/// Whether node 8 is firm at its place between eight anchors, of which it has ranges to `here`, if
-/// it has `elsewhere` more to nodes without a place.
-bool is_firm(int here, int elsewhere) {
-  Eigen::MatrixXd truth(2, 9 + elsewhere);
-  truth.leftCols(9) << 0.0, 1.0, 0.1, 0.9, 0.5, 0.4, 0.0, 1.0, 0.6,  //
-      0.0, 0.1, 1.0, 0.9, 0.0, 1.0, 0.5, 0.6, 0.4;
-  for (int k = 0; k < elsewhere; ++k) truth.col(9 + k) << 1.0 + 0.1 * k, 0.2 * k;
+/// Eight anchors and two nodes among them, of which each has ranges to so many of the anchors and
+/// to the other one: whether these are firm.
+std::vector<bool> firm_of(int of_first, int of_second) {
+  Eigen::MatrixXd truth(2, 10);
+  truth << 0.0, 1.0, 0.1, 0.9, 0.5, 0.4, 0.0, 1.0, 0.6, 0.3,  //
+      0.0, 0.1, 1.0, 0.9, 0.0, 1.0, 0.5, 0.6, 0.4, 0.7;
   auto pairs = all_pairs({0, 1, 2, 3, 4, 5, 6, 7});
-  for (int k = 0; k < here; ++k) pairs.emplace_back(k, 8);
-  for (int k = 0; k < elsewhere; ++k) pairs.emplace_back(9 + k, 8);
+  for (int k = 0; k < of_first; ++k) pairs.emplace_back(k, 8);
+  for (int k = 0; k < of_second; ++k) pairs.emplace_back(7 - k, 9);
+  pairs.emplace_back(8, 9);
   const auto problem = make_problem(exact_network(truth, pairs, {0, 1, 2, 3, 4, 5, 6, 7}));
-  Placement placement{truth, std::vector<bool>(truth.cols(), false)};
-  for (int v = 0; v < 9; ++v) placement.placed[v] = true;
-  const std::vector<bool> trusted(problem.pairs.size(), true);
-  return firm_nodes(problem, trusted, kGate, {}, placement)[8];
+  const Placement placement{truth, std::vector<bool>(10, true)};
+  const auto firm = firm_nodes(problem, all_of(problem), kGate, {}, placement);
+  return {firm[8], firm[9]};
 }
 
-TEST(FirmNodes, DPlusOneRangesDoIfMostAreHere) {
-  EXPECT_FALSE(is_firm(2, 0));
-  EXPECT_TRUE(is_firm(3, 0));
-  EXPECT_TRUE(is_firm(3, 3));
+TEST(FirmNodes, HaveRangesEnough) {
+  EXPECT_EQ(firm_of(4, 4), (std::vector<bool>{true, true}));
+  EXPECT_EQ(firm_of(4, 1), (std::vector<bool>{true, false}));
 }
 
-TEST(FirmNodes, WhereMostLeadElsewhereOneMoreHasToAgree) {
-  EXPECT_FALSE(is_firm(3, 4));
-  EXPECT_TRUE(is_firm(4, 5));
+TEST(FirmNodes, AreNotHeldByWhatHasTwoPlaces) {
+  // The first has three ranges, but one of them leads to a node with two.
+  EXPECT_EQ(firm_of(2, 1), (std::vector<bool>{false, false}));
+}
+
+TEST(FirmNodes, OfNothingAreNone) {
+  const auto none = make_problem(exact_network(Eigen::MatrixXd(2, 0), {}));
+  EXPECT_TRUE(firm_nodes(none, {}, kGate, {}, {Eigen::MatrixXd(2, 0), {}}).empty());
 }
 
 }  // namespace

@@ -2,15 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include "localize/fold/fold_trial.hpp"
+#include "localize/fold/fold_axes.hpp"
 #include "localize/fold/open_folds.hpp"
+#include "localize/fold/part_move.hpp"
 #include "network/localize/networks.hpp"
 #include "network/localize/range_problems.hpp"
 
 namespace isotherm::network::detail {
 namespace {
 
-const Evidence kNoAbsence = {{}, {kGate, kGate}};
+/// That of ranges of which a tenth may have any length up to two, and none is too long.
+const Evidence kNoAbsence = {{.share = {0.9, 0.0, 0.1}, .longest = 2.0}, {}};
 const std::vector<Index> kAbove = {8, 9, 10, 11, 12};
 
 /// Five nodes below and five above three on the x axis, the last of which stands off it by
@@ -41,7 +43,7 @@ struct Map {
         placement{hinged_points(bend), std::vector<bool>(13, true)} {}
 
   std::vector<Fold> folds() const {
-    return find_folds(problem, trusted, kNoAbsence.limits, {.threads = 1}, placement,
+    return find_folds(problem, trusted, kNoAbsence, {.threads = 1}, placement,
                       std::vector<bool>(problem.nodes, true));
   }
 
@@ -51,9 +53,9 @@ struct Map {
     return found == folds.end() ? nullptr : &*found;
   }
 
-  FoldOutcome try_it(const Fold& fold) const {
+  MoveOutcome try_it(const Fold& fold) const {
     const Crowd crowd(problem, placement, kNoAbsence.absence);
-    return try_fold(problem, trusted, kGate, kNoAbsence, crowd, placement, fold);
+    return try_move(problem, trusted, kGate, kNoAbsence, crowd, placement, fold.move(placement));
   }
 
   RangeProblem problem;
@@ -92,7 +94,7 @@ TEST(Folds, OneRangeAcrossDoesNotJoinWhatIsOnBothSides) {
   const auto folds = map.folds();
   const auto* fold = Map::fold_of(folds, kAbove);
   ASSERT_NE(fold, nullptr);
-  EXPECT_NEAR(fold->cost, kGate, 1e-9);
+  EXPECT_NEAR(fold->cost, kNoAbsence.cost_of(0.05).anything, 1e-9);
 }
 
 TEST(Folds, AnchorsDoNotTurn) {
@@ -119,11 +121,11 @@ TEST(Folds, NoneInSpaceOrOfNothing) {
 TEST(OpenFolds, MirrorsWhatFitsBetterThatWay) {
   Map map(hinged_network(0.0, {{0, 8}, {1, 9}, {2, 10}}));
   map.placement.positions.row(1).tail(5) *= -1.0;
-  EXPECT_EQ(open_folds(map.problem, map.trusted, kGate, {.threads = 1}, map.placement), 1);
+  EXPECT_TRUE(open_folds(map.problem, map.trusted, kGate, {.threads = 1}, map.placement));
   double misfit = 0.0;
   for (const auto& pair : map.problem.pairs) misfit += squared_deviation(map.placement, pair);
   EXPECT_LT(misfit, 1e-3);
-  EXPECT_EQ(open_folds(map.problem, map.trusted, kGate, {.threads = 1}, map.placement), 0);
+  EXPECT_FALSE(open_folds(map.problem, map.trusted, kGate, {.threads = 1}, map.placement));
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ struct Case {
 TEST(WeighRanges, WhatIsTooLongIsFoundAndPullsHardly) {
   const std::size_t wrong = 60;
   Case c(20, wrong);
-  const auto weighed = weigh_ranges(c.problem, {}, c.placement);
+  const auto weighed = weigh_ranges(c.problem, {}, {}, c.placement);
   EXPECT_TRUE(weighed.too_long);
   EXPECT_NEAR(weighed.model.share[kTooLong], 60.0 / 190.0, 0.08);
   EXPECT_NEAR(weighed.model.excess, 0.15, 0.05);
@@ -84,7 +84,7 @@ TEST(WeighRanges, WhatIsTooLongIsFoundAndPullsHardly) {
 
 TEST(WeighRanges, WhereNothingIsTooLongThereIsMoreEvidenceForNoSuchKind) {
   Case c(20, 0);
-  const auto weighed = weigh_ranges(c.problem, {}, c.placement);
+  const auto weighed = weigh_ranges(c.problem, {}, {}, c.placement);
   EXPECT_FALSE(weighed.too_long);
   EXPECT_EQ(weighed.model.share[kTooLong], 0.0);
   double fitted = 0.0;
@@ -96,7 +96,7 @@ TEST(WeighRanges, WhereNothingIsTooLongThereIsMoreEvidenceForNoSuchKind) {
 // The gradient of the density vanishes where it is said to be largest.
 TEST(WeighRanges, EndsAtAMaximumOfTheDensity) {
   Case c(12, 20);
-  const auto weighed = weigh_ranges(c.problem, {}, c.placement);
+  const auto weighed = weigh_ranges(c.problem, {}, {}, c.placement);
   const auto cost = [&] {
     double sum = 0.0;
     for (std::size_t k = 0; k < c.problem.ranges.size(); ++k) {

@@ -31,9 +31,9 @@ class OutputGroup {
   std::unique_ptr<State> state_;
 };
 
-/// Whether a group is giving its files their names, which takes a moment and should not be
-/// cut short. Safe in a signal handler.
-bool outputs_taking_place() noexcept;
+/// Whether a group of this process is giving its files their names, which takes a moment and
+/// should not be cut short, or has. Safe in a signal handler.
+bool outputs_in_place() noexcept;
 
 /// Removes what unfinished outputs have in the file system. For a signal handler that is
 /// about to end the process, and safe in one.

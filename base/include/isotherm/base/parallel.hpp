@@ -11,8 +11,9 @@
 namespace isotherm {
 
 /// Runs body(index) for every index in [0, count) on `threads` threads (0: all cores;
-/// never more than one a core), in any order; calls for different indices must not depend
-/// on each other. Progress is reported under the name `stage`, from the calling thread only.
+/// never more than one a core, and one with a BLAS that does not serve several), in any order;
+/// calls for different indices must not depend on each other. Progress is reported under the name
+/// `stage`, from the calling thread only.
 /// @throws InvalidArgument if threads < 0, Cancelled, and what the body throws.
 void parallel_for(std::int64_t count, int threads, const ProgressCallback& progress,
                   std::string_view stage, const std::function<void(std::int64_t)>& body);

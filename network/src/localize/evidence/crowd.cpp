@@ -20,25 +20,22 @@ void Crowd::insert(Index node, const Point& position) {
   if (absence_.reach() > 0.0) grid_.insert(node, position);
 }
 
-void Crowd::add_strangers(SmallNetwork& star, Index node, const std::vector<bool>& among) const {
+void Crowd::add_strangers(Star& star, Index node, const std::vector<bool>& among) const {
   constexpr double kAround = 2.5;  // reaches
-  if (!(absence_.reach() > 0.0) || star.fixed == 0) return;
+  if (!(absence_.reach() > 0.0) || star.arms.empty()) return;
   // Where most neighbours are. Places far from there have too few strangers, which makes them
   // look better than they are, not worse.
   Point middle(problem_.dimension);
   for (int i = 0; i < problem_.dimension; ++i) {
     std::vector<double> values;
-    for (int k = 0; k < star.fixed; ++k) values.push_back(star.positions(i, k));
+    for (const auto& arm : star.arms) values.push_back(arm.end[i]);
     middle[i] = lower_median(std::move(values));
   }
   const double radius = kAround * absence_.reach();
-  std::vector<Point> found;
   grid_.visit_near(middle, radius, [&](Index other, const Point& position) {
     if (other == node || !among[other] || (position - middle).norm() > radius) return;
-    if (!has_range(problem_, node, other)) found.push_back(position);
+    if (!has_range(problem_, node, other)) star.strangers.push_back(position);
   });
-  star.strangers.resize(problem_.dimension, static_cast<Eigen::Index>(found.size()));
-  for (std::size_t k = 0; k < found.size(); ++k) star.strangers.col(k) = found[k];
   star.absence = &absence_;
 }
 

@@ -2,10 +2,10 @@
 
 #include <vector>
 
+#include "localize/evidence/star.hpp"
 #include "localize/problem/absence.hpp"
 #include "localize/problem/point_grid.hpp"
 #include "localize/problem/range_problem.hpp"
-#include "localize/problem/small_network.hpp"
 
 namespace isotherm::network::detail {
 
@@ -22,7 +22,7 @@ class Crowd {
 
   /// Gives the star of a node its strangers: those of the crowd in `among` that have no range
   /// to the node, as far as its neighbours let it come near them.
-  void add_strangers(SmallNetwork& star, Index node, const std::vector<bool>& among) const;
+  void add_strangers(Star& star, Index node, const std::vector<bool>& among) const;
 
   /// What it costs that a node is at this place without ranges to those of the crowd in
   /// `among`.

@@ -2,58 +2,99 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include "localize/evidence/crowd.hpp"
 
 namespace isotherm::network::detail {
 namespace {
 
-// How ranges fit.
-class Tally {
- public:
-  void add(double residual, double gate) {
-    if (residual * residual <= gate) {
-      ++fitting_;
-    } else {
-      ++(residual > 0.0 ? apart_ : close_);
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+// Of a normal error of this deviation, at its peak.
+double peak(double sigma) { return 1.0 / (sigma * std::sqrt(2.0 * std::numbers::pi)); }
+
+double longest_range(const RangeProblem& problem) {
+  double longest = 0.0;
+  for (const auto& range : problem.ranges) longest = std::max(longest, range.distance);
+  return longest;
+}
+
+RangeMixture learn_kinds_of(const RangeProblem& problem, const std::vector<bool>& trusted,
+                            const Placement& placement) {
+  constexpr int kRounds = 10;
+  auto model = first_mixture(problem, placement, true);
+  for (int round = 0; round < kRounds; ++round) {
+    RangeStatistics statistics;
+    for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
+      const auto& pair = problem.pairs[p];
+      if (!trusted[p] || !is_placed(placement, pair)) continue;
+      const double error = -pair.sigma * deviation(placement, pair);
+      statistics.add(range_moments(model, error, pair.sigma * pair.sigma));
     }
+    learn_kinds(statistics, typical_excess(problem.typical_sigma, model.longest),
+                problem.typical_sigma, true, model);
   }
-
-  Limits limits(const RangeProblem& problem) const {
-    constexpr double kLeast = 4.0;
-    constexpr double kPeak = 0.3989;  // of the standard normal density
-    // A wrong range has any length up to about twice the usual one.
-    const double span = 2.0 * problem.typical_distance / problem.typical_sigma;
-    const auto limit = [&](double wrong) {
-      return std::max(kLeast, 2.0 * std::log(fitting_ / wrong * kPeak * span));
-    };
-    return {limit(apart_), limit(close_)};
-  }
-
- private:
-  double fitting_ = 0.5;
-  double apart_ = 0.5;
-  double close_ = 0.5;
-};
+  return model;
+}
 
 }  // namespace
 
-Evidence learn_evidence(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
-                        const Placement& placement) {
-  Tally tally;
-  for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
-    const auto& pair = problem.pairs[p];
-    if (trusted[p] && is_placed(placement, pair)) tally.add(deviation(placement, pair), gate);
-  }
-  return {Absence::learn(problem, trusted, placement), tally.limits(problem)};
+double RangeCost::operator()(double residual) const {
+  const double cost = std::min(residual * residual, anything);
+  return residual < 0.0 ? std::min(cost, too_long - per_sigma * residual) : cost;
 }
 
-Evidence learn_evidence(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
-                        const std::vector<Patch>& patches) {
-  Tally tally;
-  for (const auto& patch : patches) {
-    const SmallNetwork network{patch.positions, 0, inner_ranges(problem, trusted, patch.members)};
-    for (const auto& range : network.ranges) tally.add(deviation(network, range), gate);
+double RangeCost::apart_at(double cost) const { return cost < anything ? std::sqrt(cost) : kNever; }
+
+double RangeCost::close_at(double cost) const {
+  if (cost >= anything) return kNever;
+  const double excess = too_long < cost ? (cost - too_long) / per_sigma : 0.0;
+  return std::max(std::sqrt(cost), excess);
+}
+
+RangeCost Evidence::cost_of(double sigma) const {
+  RangeCost cost;
+  const auto& share = model.share;
+  const auto beside = [&](double density) {
+    return std::max(0.0, 2.0 * std::log(share[kCorrect] * peak(sigma) / density));
+  };
+  cost.anything = beside(share[kAnything] / model.longest);
+  if (share[kTooLong] > 0.0) {
+    cost.too_long = beside(share[kTooLong] / model.excess);
+    cost.per_sigma = 2.0 * sigma / model.excess;
   }
-  return {Absence::learn(problem, trusted, patches), tally.limits(problem)};
+  return cost;
+}
+
+RangeMixture first_mixture(const RangeProblem& problem, const Placement& placement, bool too_long) {
+  RangeMixture model;
+  model.longest = extent(placement);
+  model.longest = std::max(model.longest, longest_range(problem));
+  if (!(model.longest > 0.0)) model.longest = 1.0;
+  model.excess = typical_excess(problem.typical_sigma, model.longest);
+  if (!too_long) leave_out_too_long(model);
+  return model;
+}
+
+Evidence learn_evidence(const RangeProblem& problem, const std::vector<bool>& trusted,
+                        const Placement& placement) {
+  return {learn_kinds_of(problem, trusted, placement), Absence::learn(problem, trusted, placement)};
+}
+
+double worth(const RangeProblem& problem, const std::vector<bool>& trusted,
+             const Placement& placement) {
+  const auto evidence = learn_evidence(problem, trusted, placement);
+  const double correct = evidence.model.share[kCorrect] * longest_range(problem);
+  double sum = -absence_cost(problem, evidence.absence, placement);
+  for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
+    const auto& pair = problem.pairs[p];
+    if (!trusted[p] || !is_placed(placement, pair)) continue;
+    sum += 2.0 * std::log(correct * peak(pair.sigma));
+    sum -= evidence.cost_of(pair.sigma)(deviation(placement, pair));
+  }
+  const double coordinates = problem.dimension * placed_count(placement);
+  return sum - coordinates * 2.0 * std::log(evidence.model.longest * peak(problem.typical_sigma));
 }
 
 }  // namespace isotherm::network::detail

@@ -1,29 +1,52 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
+#include "isotherm/network/localize/range_mixture.hpp"
 #include "localize/problem/absence.hpp"
-#include "localize/problem/patch.hpp"
 #include "localize/problem/range_problem.hpp"
-#include "localize/problem/small_network.hpp"
 
+/// The objective: twice the log of how likely a map is.
 namespace isotherm::network::detail {
 
-/// What speaks for and against places, as learned from maps.
-struct Evidence {
-  Absence absence;  ///< of ranges
-  Limits limits;    ///< what ranges that do not fit cost
+/// What a range costs by how far its ends are off, beside a correct one without error: twice the
+/// log of the ratio of densities, the range being of the kind that is likeliest there (E. Olson, P.
+/// Agarwal, "Inference on networks of mixtures for robust robot mapping", 2013).
+struct RangeCost {
+  double anything = 0.0;  ///< where nothing is left of the correct kind; the most there is
+  double too_long = std::numeric_limits<double>::infinity();  ///< the same of an excess of 0
+  double per_sigma = 0.0;                                     ///< more for a longer one
+
+  /// Of (distance of the ends - range) / sigma.
+  double operator()(double residual) const;
+
+  /// How far ends may be apart, or too close, before that costs so much; infinite if never.
+  double apart_at(double cost) const;
+  double close_at(double cost) const;
 };
 
-/// From the trusted pairs of placed nodes. A range that does not fit costs twice the log of how
-/// much likelier a range that fits is a correct one than one of any length; that is
-/// learned for ranges that are too long and too short apart: without line of sight they are
-/// only ever too long, and between the wrong nodes mostly too short.
-Evidence learn_evidence(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
+/// What speaks for and against places, as learned from a map.
+struct Evidence {
+  RangeMixture model;
+  Absence absence;
+
+  RangeCost cost_of(double sigma) const;
+};
+
+/// Before anything is known of the kinds of range. What can be any length is as long as the map, or
+/// as the longest range if that is longer.
+RangeMixture first_mixture(const RangeProblem& problem, const Placement& placement, bool too_long);
+
+/// Shares of the kinds of range, and the mean excess, by expectation maximisation from the trusted
+/// pairs of placed nodes; absence from these nodes.
+Evidence learn_evidence(const RangeProblem& problem, const std::vector<bool>& trusted,
                         const Placement& placement);
 
-/// The same from local maps.
-Evidence learn_evidence(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
-                        const std::vector<Patch>& patches);
+/// Twice the log of how much likelier the trusted pairs of placed nodes, and the absence of others,
+/// are on this map than ranges of any length up to the longest, times what is left of the prior of
+/// its coordinates, which may be anywhere on it, within the noise of a range.
+double worth(const RangeProblem& problem, const std::vector<bool>& trusted,
+             const Placement& placement);
 
 }  // namespace isotherm::network::detail

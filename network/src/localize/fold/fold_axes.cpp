@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <set>
 #include <span>
 #include <unordered_map>
@@ -26,19 +25,22 @@ struct PairTie {
   Index vertex = 0;  // the other
   double distance = 0.0;
   double sigma = 1.0;
+  RangeCost cost_by_residual;
   double squared = 0.0;  // distance of their places
   double cost = 0.0;     // as things stand
   // Squared distances beyond which the tie is broken.
   double least = 0.0;
   double most = 0.0;
+
+  // What it costs that the ends are this far from each other.
+  double cost_at(double length) const { return cost_by_residual((length - distance) / sigma); }
 };
 
 // The ties of all nodes, side by side: a search goes over them again and again.
 class PairTies {
  public:
-  PairTies(const RangeProblem& problem, const std::vector<bool>& trusted, const Limits& limits,
-           const Placement& placement)
-      : limits_(limits) {
+  PairTies(const RangeProblem& problem, const std::vector<bool>& trusted, const Evidence& evidence,
+           const Placement& placement) {
     for (Index v = 0; v < problem.nodes; ++v) {
       places_.emplace_back(placement.positions.col(v));
       first_.push_back(ties_.size());
@@ -47,8 +49,9 @@ class PairTies {
         if (!trusted[edge] || !placement.placed[vertex]) continue;
         const auto& pair = problem.pairs[edge];
         const Eigen::Vector2d arm = placement.positions.col(v) - placement.positions.col(vertex);
-        PairTie tie{vertex, pair.distance, pair.sigma, arm.squaredNorm()};
-        tie.cost = cost_of(tie, std::sqrt(tie.squared));
+        PairTie tie{vertex, pair.distance, pair.sigma, evidence.cost_of(pair.sigma),
+                    arm.squaredNorm()};
+        tie.cost = tie.cost_at(std::sqrt(tie.squared));
         limit(tie);
         ties_.push_back(tie);
       }
@@ -62,24 +65,17 @@ class PairTies {
 
   const Eigen::Vector2d& place(Index node) const { return places_[node]; }
 
-  // What it costs that the ends of a tie are this far from each other.
-  double cost_of(const PairTie& tie, double length) const {
-    const double r = (length - tie.distance) / tie.sigma;
-    return std::min(r * r, limits_(r));
-  }
-
  private:
   // A broken one costs more than before by half of what a range that does not fit does.
-  void limit(PairTie& tie) const {
-    const double broken = tie.cost + kBroken * limits_.least();
-    const double apart = tie.distance + tie.sigma * std::sqrt(broken);
-    const double close = tie.distance - tie.sigma * std::sqrt(broken);
-    constexpr double kNever = std::numeric_limits<double>::infinity();
-    tie.most = broken < limits_.apart ? apart * apart : kNever;
-    tie.least = broken < limits_.close && close > 0.0 ? close * close : -kNever;
+  static void limit(PairTie& tie) {
+    const auto& cost = tie.cost_by_residual;
+    const double broken = tie.cost + kBroken * cost.anything;
+    const double apart = tie.distance + tie.sigma * cost.apart_at(broken);
+    const double close = tie.distance - tie.sigma * cost.close_at(broken);
+    tie.most = apart * apart;
+    tie.least = close > 0.0 ? close * close : -1.0;
   }
 
-  const Limits& limits_;
   std::vector<Eigen::Vector2d> places_;
   std::vector<std::size_t> first_;  // node -> its first tie
   std::vector<PairTie> ties_;
@@ -88,11 +84,11 @@ class PairTies {
 // The folds in lines through one node after the other.
 class AxisSearch {
  public:
-  AxisSearch(const RangeProblem& problem, const PairTies& ties, const Limits& limits,
+  AxisSearch(const RangeProblem& problem, const PairTies& ties, double most_cost,
              const Placement& placement)
       : problem_(problem),
         ties_(ties),
-        limits_(limits),
+        most_cost_(most_cost),
         // Without anchors a part is what turns beside the rest, which is larger.
         most_(problem.anchored() ? kMost : std::min(kMost, placed_count(placement) / 2)),
         known_(problem.nodes, 0),
@@ -167,7 +163,7 @@ class AxisSearch {
   void add_fold(std::vector<Index> part, std::vector<Fold>& found) const {
     std::sort(part.begin(), part.end());
     const double cost = cost_of(part);
-    if (cost > kMostBroken * limits_.least()) return;
+    if (cost > most_cost_) return;
     found.push_back({std::move(part), through_, normal_, cost});
   }
 
@@ -177,7 +173,7 @@ class AxisSearch {
     for (const Index v : part) {
       for (const auto& tie : ties_.of(v)) {
         if (part_of_[tie.vertex] == part_number_) continue;
-        cost += ties_.cost_of(tie, std::sqrt(mirrored(tie, height(v)))) - tie.cost;
+        cost += tie.cost_at(std::sqrt(mirrored(tie, height(v)))) - tie.cost;
       }
     }
     return cost;
@@ -198,7 +194,7 @@ class AxisSearch {
 
   const RangeProblem& problem_;
   const PairTies& ties_;
-  const Limits& limits_;
+  double most_cost_;         // of a part
   Index most_;               // nodes of a part
   Eigen::Vector2d through_;  // the axis
   Eigen::Vector2d normal_;
@@ -222,7 +218,7 @@ bool are_alike(const std::vector<Index>& a, const std::vector<Index>& b) {
 // Each part in one line, and of parts that are alike a few: they differ by what is near the line.
 // Given the cheapest first.
 std::vector<Fold> cheapest_of_alike(std::vector<Fold> folds) {
-  constexpr int kMostAlike = 5;
+  constexpr int kMostAlike = 2;
   std::vector<Fold> kept;
   std::unordered_map<Index, std::vector<std::size_t>> kept_with;  // node -> places in `kept`
   for (auto& fold : folds) {
@@ -247,16 +243,23 @@ Point Fold::mirrored(const Point& point) const {
   return point - 2.0 * normal.dot(point - through) * normal;
 }
 
+PartMove Fold::move(const Placement& placement) const {
+  PartMove result{part, placement.positions(Eigen::all, part)};
+  for (auto place : result.positions.colwise()) place = mirrored(place).eval();
+  return result;
+}
+
 std::vector<Fold> find_folds(const RangeProblem& problem, const std::vector<bool>& trusted,
-                             const Limits& limits, const LocalizeOptions& options,
+                             const Evidence& evidence, const LocalizeOptions& options,
                              const Placement& placement, const std::vector<bool>& among) {
   constexpr Index kBlock = 64;  // nodes that share the memory of a search
   if (problem.dimension != 2) return {};
   const Index blocks = (problem.nodes + kBlock - 1) / kBlock;
-  const PairTies ties(problem, trusted, limits, placement);
+  const PairTies ties(problem, trusted, evidence, placement);
+  const double most_cost = kMostBroken * evidence.cost_of(problem.typical_sigma).anything;
   std::vector<std::vector<Fold>> found(blocks);
   parallel_for(blocks, options.threads, options.progress, "folds", [&](std::int64_t block) {
-    AxisSearch search(problem, ties, limits, placement);
+    AxisSearch search(problem, ties, most_cost, placement);
     const auto first = static_cast<Index>(block) * kBlock;
     for (Index v = first; v < std::min(problem.nodes, first + kBlock); ++v) {
       if (among[v]) search.add_folds_through(v, found[block]);

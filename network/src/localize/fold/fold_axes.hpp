@@ -3,8 +3,9 @@
 #include <vector>
 
 #include "isotherm/network/localize/localize.hpp"
+#include "localize/evidence/evidence.hpp"
+#include "localize/fold/part_move.hpp"
 #include "localize/problem/range_problem.hpp"
-#include "localize/problem/small_network.hpp"
 
 namespace isotherm::network::detail {
 
@@ -16,6 +17,9 @@ struct Fold {
   double cost = 0.0;        ///< by how much the mirrored part fits worse before anything gives way
 
   Point mirrored(const Point& point) const;
+
+  /// The part in its mirror image.
+  PartMove move(const Placement& placement) const;
 };
 
 /// The parts of at most 200 placed nodes that a line through two nodes with a range may be a hinge
@@ -23,11 +27,11 @@ struct Fold {
 /// stretch them little. A part is grown from two of its nodes over pairs that the fold would break
 /// and takes in nodes that two such pairs lead to, so that no single range, which may be
 /// false, joins what is on both sides of a hinge. Each part once, and of parts that are nearly the
-/// same five; the cheapest fold first. Empty in space. Only lines that begin at a node in `among`
+/// same two; the cheapest fold first. Empty in space. Only lines that begin at a node in `among`
 /// count: those near what has changed since the last search. O(pairs * 200 * degree) at most, in
 /// parallel.
 std::vector<Fold> find_folds(const RangeProblem& problem, const std::vector<bool>& trusted,
-                             const Limits& limits, const LocalizeOptions& options,
+                             const Evidence& evidence, const LocalizeOptions& options,
                              const Placement& placement, const std::vector<bool>& among);
 
 /// The nodes near these, where lines are to be searched again when these have moved.

@@ -8,9 +8,10 @@
 namespace isotherm::network::detail {
 
 /// Mirrors the parts of a refined map whose mirror image fits better, those that gain most
-/// first, and refines it again, as long as there are any; how many. A map of springs does
+/// first, and refines it again, as long as there are any; whether there
+/// were. A map of springs does
 /// not do that by itself: on the way over a hinge everything fits worse.
-Index open_folds(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
-                 const LocalizeOptions& options, Placement& placement);
+bool open_folds(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
+                const LocalizeOptions& options, Placement& placement);
 
 }  // namespace isotherm::network::detail

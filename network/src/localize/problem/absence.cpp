@@ -91,21 +91,6 @@ class Absence::Counts {
 };
 
 Absence Absence::learn(const RangeProblem& problem, const std::vector<bool>& trusted,
-                       const std::vector<Patch>& patches) {
-  Counts counts(problem, trusted);
-  if (!(counts.end() > 0.0)) return {};
-  for (const auto& patch : patches) {
-    for (std::size_t a = 0; a < patch.members.size(); ++a) {
-      for (std::size_t b = a + 1; b < patch.members.size(); ++b) {
-        counts.add(patch.members[a], patch.members[b],
-                   (patch.positions.col(a) - patch.positions.col(b)).norm());
-      }
-    }
-  }
-  return counts.curve();
-}
-
-Absence Absence::learn(const RangeProblem& problem, const std::vector<bool>& trusted,
                        const Placement& placement) {
   Counts counts(problem, trusted);
   std::vector<Index> nodes;
@@ -123,14 +108,18 @@ Absence Absence::learn(const RangeProblem& problem, const std::vector<bool>& tru
   return counts.curve();
 }
 
-double Absence::cost(double distance) const {
-  if (distance >= reach_) return 0.0;
+double Absence::cost(double distance) const { return at(distance).first; }
+
+double Absence::slope(double distance) const { return at(distance).second; }
+
+std::pair<double, double> Absence::at(double distance) const {
+  if (distance >= reach_) return {0.0, 0.0};
   const double at = distance / bin_ - 0.5;
-  if (at <= 0.0) return costs_.front();
+  if (at <= 0.0) return {costs_.front(), 0.0};
   const auto k = static_cast<std::size_t>(at);
   const double next = k + 1 < costs_.size() ? costs_[k + 1] : 0.0;
   const double share = at - static_cast<double>(k);
-  return (1.0 - share) * costs_[k] + share * next;
+  return {(1.0 - share) * costs_[k] + share * next, (next - costs_[k]) / bin_};
 }
 
 }  // namespace isotherm::network::detail

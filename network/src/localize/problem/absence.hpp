@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
-#include "localize/problem/patch.hpp"
 #include "localize/problem/range_problem.hpp"
 
 namespace isotherm::network::detail {
@@ -16,10 +16,6 @@ class Absence {
  public:
   Absence() = default;
 
-  /// From the pairs of nodes within the local maps.
-  static Absence learn(const RangeProblem& problem, const std::vector<bool>& trusted,
-                       const std::vector<Patch>& patches);
-
   /// From the pairs of placed nodes; those between anchors, and those that have a range
   /// which is not trusted, do not count. O(nodes * degree).
   static Absence learn(const RangeProblem& problem, const std::vector<bool>& trusted,
@@ -29,14 +25,21 @@ class Absence {
   /// least 0.
   double cost(double distance) const;
 
+  /// Its derivative; at most 0.
+  double slope(double distance) const;
+
+  /// How far apart the distances are between which it changes.
+  double resolution() const { return bin_; }
+
   /// Distance from which on absence costs nothing: up to there most nodes have a range. 0 if
   /// it never costs anything.
   double reach() const { return reach_; }
 
  private:
   class Counts;
-  double bin_ = 0.0;           // width
-  std::vector<double> costs_;  // at the middle of each bin
+  std::pair<double, double> at(double distance) const;  // cost and slope
+  double bin_ = 0.0;                                    // width
+  std::vector<double> costs_;                           // at the middle of each bin
   double reach_ = 0.0;
 };
 

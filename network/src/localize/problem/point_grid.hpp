@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "localize/problem/small_network.hpp"
+#include "localize/problem/range_problem.hpp"
 
 namespace isotherm::network::detail {
 

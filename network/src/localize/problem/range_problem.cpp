@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <Eigen/SVD>
 
 #include "isotherm/base/error.hpp"
@@ -100,6 +101,14 @@ Placement place_nodes(const RangeProblem& problem, const std::vector<Index>& nod
 
 Index placed_count(const Placement& placement) {
   return static_cast<Index>(std::count(placement.placed.begin(), placement.placed.end(), true));
+}
+
+double extent(const Placement& placement) {
+  Eigen::AlignedBoxXd box(placement.positions.rows());
+  for (Eigen::Index v = 0; v < placement.positions.cols(); ++v) {
+    if (placement.placed[v]) box.extend(placement.positions.col(v));
+  }
+  return box.isEmpty() ? 0.0 : box.diagonal().norm();
 }
 
 bool are_placed(const Placement& placement, Index a, Index b) {

@@ -9,6 +9,11 @@
 
 namespace isotherm::network::detail {
 
+/// A point or direction in the plane or in space, and a d x d block: no memory of
+/// their own to fetch.
+using Point = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1>;
+using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
+
 /// All ranges between the same two nodes, as one.
 struct RangePair {
   Index from = 0;
@@ -46,6 +51,9 @@ Placement place_nodes(const RangeProblem& problem, const std::vector<Index>& nod
 
 /// How many nodes have a place.
 Index placed_count(const Placement& placement);
+
+/// Of the box around the placed nodes, the diagonal; 0 of none.
+double extent(const Placement& placement);
 
 /// Whether both have one.
 bool are_placed(const Placement& placement, Index a, Index b);

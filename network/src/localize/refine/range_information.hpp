@@ -7,7 +7,6 @@
 
 #include "isotherm/spectral/sparse/block_cholesky.hpp"
 #include "localize/problem/range_problem.hpp"
-#include "localize/problem/small_network.hpp"
 
 namespace isotherm::network::detail {
 

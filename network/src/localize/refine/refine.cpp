@@ -1,16 +1,21 @@
 #include "localize/refine/refine.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include "isotherm/base/error.hpp"
 #include "isotherm/spectral/sparse/damped_step.hpp"
 #include "localize/problem/geman_mcclure.hpp"
-#include "localize/problem/small_network.hpp"
+#include "localize/problem/point_grid.hpp"
+#include "localize/problem/range_problem.hpp"
 
 namespace isotherm::network::detail {
 namespace {
+
+constexpr double kAnyStep = std::numeric_limits<double>::infinity();
 
 // What a spring of a length costs, twice, and half the derivatives of that by the length.
 struct LengthCost {
@@ -32,9 +37,10 @@ template <class Cost>
 class SparseSystem {
  public:
   SparseSystem(const RangeProblem& problem, const std::vector<Spring>& springs, Cost length_cost,
-               Placement& placement)
+               double longest_step, Placement& placement)
       : problem_(problem),
         length_cost_(std::move(length_cost)),
+        longest_step_(longest_step),
         placement_(placement),
         variable_(problem.nodes, -1),
         matrix_(pattern(springs)),
@@ -59,7 +65,10 @@ class SparseSystem {
     before_ = placement_.positions;
     const int d = problem_.dimension;
     for (Index v = 0; v < problem_.nodes; ++v) {
-      if (variable_[v] >= 0) placement_.positions.col(v) += step_.segment(variable_[v] * d, d);
+      if (variable_[v] < 0) continue;
+      auto step = step_.segment(variable_[v] * d, d);
+      if (step.norm() > longest_step_) step *= longest_step_ / step.norm();
+      placement_.positions.col(v) += step;
     }
     return -step_.dot(gradient_);
   }
@@ -121,6 +130,7 @@ class SparseSystem {
 
   const RangeProblem& problem_;
   Cost length_cost_;
+  double longest_step_;  // of a node
   Placement& placement_;
   std::vector<Index> variable_;  // a node's block, or -1 if it does not move
   std::vector<Spring> springs_;
@@ -149,7 +159,7 @@ RefineOutcome refine(const RangeProblem& problem, const std::vector<Spring>& spr
                      Placement& placement, const RefineOptions& options) {
   constexpr double kStillStep = 1e-6;  // of the typical standard deviation
   const double still_step = kStillStep * problem.typical_sigma;
-  SparseSystem system(problem, springs, of_spring, placement);
+  SparseSystem system(problem, springs, of_spring, kAnyStep, placement);
   if (system.unknowns() == 0) return {};
   double damping = 1e-4;
   double cost = system.cost();
@@ -171,6 +181,10 @@ namespace {
 // Beyond so many deviations a range pulls as hard wherever its ends are, so that no step needs to
 // know of both together: what far nodes are joined by would fill the factor.
 constexpr double kCouples = 8.0;
+constexpr double kFirstDamping = 1e-6;
+// Standard deviations that a node moves at a time: what is far outside of the noise has no
+// curvature, and would throw a node that hangs on little to where nothing fits.
+constexpr double kLongestStep = 4.0;
 constexpr double kNoGain = 1e-3;  // nats: what nobody can tell apart
 
 std::vector<Spring> all_springs(const RangeProblem& problem, const Placement& placement) {
@@ -187,10 +201,45 @@ std::vector<Spring> all_springs(const RangeProblem& problem, const Placement& pl
   return springs;
 }
 
+// Pairs without a range that are near each other, or may come to be.
+void add_absent(const RangeProblem& problem, const Absence& absence, const Placement& placement,
+                std::vector<Spring>& springs) {
+  constexpr double kAround = 1.25;  // reaches
+  if (!(absence.reach() > 0.0)) return;
+  std::vector<Index> nodes;
+  for (Index v = 0; v < problem.nodes; ++v) {
+    if (placement.placed[v]) nodes.push_back(v);
+  }
+  const auto wanted = [&](std::int32_t a, std::int32_t b) {
+    return !(problem.is_anchor[nodes[a]] && problem.is_anchor[nodes[b]]) &&
+           !has_range(problem, nodes[a], nodes[b]);
+  };
+  const Eigen::MatrixXd points = placement.positions(Eigen::all, nodes);
+  for (const auto& [a, b] : near_pairs(points, kAround * absence.reach(), wanted)) {
+    springs.push_back({.from = nodes[a], .to = nodes[b], .couples = false, .absent = true});
+  }
+}
+
+// Its curvature is that of a parabola with its bottom where absence costs nothing any more.
+LengthCost of_absent(const Absence& absence, double length) {
+  const double slope = absence.slope(length);
+  const double rest = std::max(absence.reach() - length, absence.resolution());
+  return {absence.cost(length), 0.5 * slope, -0.5 * slope / rest};
+}
+
+LengthCost of_kinds(const RangeMixture& model, const Absence& absence, const Spring& spring,
+                    double length) {
+  if (spring.absent) return of_absent(absence, length);
+  const auto loss =
+      range_loss(model, spring.distance - length, std::pow(model.sigma(spring.sigma), 2));
+  return {2.0 * loss.cost, -loss.slope, loss.curvature};
+}
+
 RangeStatistics statistics_of(const RangeMixture& model, const std::vector<Spring>& springs,
                               const Placement& placement) {
   RangeStatistics statistics;
   for (const auto& spring : springs) {
+    if (spring.absent) continue;
     const double error = spring.distance - distance_of(placement, spring.from, spring.to);
     statistics.add(range_moments(model, error, std::pow(model.sigma(spring.sigma), 2)));
   }
@@ -199,19 +248,36 @@ RangeStatistics statistics_of(const RangeMixture& model, const std::vector<Sprin
 
 }  // namespace
 
-RefineOutcome refine_mixture(const RangeProblem& problem, bool too_long, int max_iterations,
-                             const ProgressCallback& progress, RangeMixture& model,
-                             Placement& placement) {
-  const auto springs = all_springs(problem, placement);
-  const auto cost_of = [&model](const Spring& spring, double length) {
-    const auto loss =
-        range_loss(model, spring.distance - length, std::pow(model.sigma(spring.sigma), 2));
-    return LengthCost{2.0 * loss.cost, -loss.slope, loss.curvature};
+RefineOutcome refine_likelihood(const RangeProblem& problem, const std::vector<Spring>& springs,
+                                const Evidence& evidence, int max_iterations,
+                                Placement& placement) {
+  const auto cost_of = [&](const Spring& spring, double length) {
+    return of_kinds(evidence.model, evidence.absence, spring, length);
   };
-  SparseSystem system(problem, springs, cost_of, placement);
+  SparseSystem system(problem, springs, cost_of, kLongestStep * problem.typical_sigma, placement);
+  if (system.unknowns() == 0) return {};
+  double damping = kFirstDamping;
+  double cost = system.cost();
+  for (int k = 0; k < max_iterations; ++k) {
+    const double before = cost;
+    const bool moved = spectral::damped_step(system, damping, cost);
+    if (!moved || before - cost < 2.0 * kNoGain) return {k + 1, true};
+  }
+  return {max_iterations, false};
+}
+
+RefineOutcome refine_mixture(const RangeProblem& problem, const Absence& absence, bool too_long,
+                             int max_iterations, const ProgressCallback& progress,
+                             RangeMixture& model, Placement& placement) {
+  auto springs = all_springs(problem, placement);
+  add_absent(problem, absence, placement, springs);
+  const auto cost_of = [&](const Spring& spring, double length) {
+    return of_kinds(model, absence, spring, length);
+  };
+  SparseSystem system(problem, springs, cost_of, kLongestStep * problem.typical_sigma, placement);
   if (system.unknowns() == 0) return {};
   const double excess = typical_excess(problem.typical_sigma, model.longest);
-  double damping = 1e-6;
+  double damping = kFirstDamping;
   for (int k = 0; k < max_iterations; ++k) {
     const Progress done{"kinds of ranges", static_cast<std::uint64_t>(k),
                         static_cast<std::uint64_t>(max_iterations)};

@@ -5,6 +5,8 @@
 
 #include "isotherm/base/progress.hpp"
 #include "isotherm/network/localize/range_mixture.hpp"
+#include "localize/evidence/evidence.hpp"
+#include "localize/problem/absence.hpp"
 #include "localize/problem/range_problem.hpp"
 
 namespace isotherm::network::detail {
@@ -20,6 +22,7 @@ struct Spring {
   double width_apart = std::numeric_limits<double>::infinity();  ///< ends farther than `distance`
   double width_close = std::numeric_limits<double>::infinity();  ///< ends closer than that
   bool couples = true;  ///< whether a step takes both ends together
+  bool absent = false;  ///< there is none: only absence has a say
 };
 
 struct RefineOptions {
@@ -47,12 +50,17 @@ RefineOutcome refine(const RangeProblem& problem, const std::vector<bool>& use,
 RefineOutcome refine(const RangeProblem& problem, const std::vector<Spring>& springs,
                      Placement& placement, const RefineOptions& options);
 
+/// The same to where the springs are likeliest, by what is known of the kinds of range and of
+/// absent ones.
+RefineOutcome refine_likelihood(const RangeProblem& problem, const std::vector<Spring>& springs,
+                                const Evidence& evidence, int max_iterations, Placement& placement);
+
 /// Moves the placed nodes that are no anchors, and the shares and the excess of `model`, to a
-/// maximum of the joint density of all ranges between placed nodes: damped steps and most likely
-/// parameters by turns (expectation maximisation). `too_long` says whether ranges can be. @throws
-/// Cancelled
-RefineOutcome refine_mixture(const RangeProblem& problem, bool too_long, int max_iterations,
-                             const ProgressCallback& progress, RangeMixture& model,
-                             Placement& placement);
+/// maximum of the joint density of all ranges between placed nodes, and of there being no others:
+/// damped steps and most likely parameters by turns (expectation maximisation). `too_long` says
+/// whether ranges can be. @throws Cancelled
+RefineOutcome refine_mixture(const RangeProblem& problem, const Absence& absence, bool too_long,
+                             int max_iterations, const ProgressCallback& progress,
+                             RangeMixture& model, Placement& placement);
 
 }  // namespace isotherm::network::detail

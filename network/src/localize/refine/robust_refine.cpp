@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "localize/evidence/evidence.hpp"
-#include "localize/evidence/placing.hpp"
+#include "localize/evidence/relocate.hpp"
 
 namespace isotherm::network::detail {
 namespace {
@@ -113,7 +113,7 @@ RefineOutcome refine_robustly(const RangeProblem& problem, const std::vector<boo
   stages.fit(narrow);
   std::vector<bool> among(problem.nodes, true);
   for (int round = 0; round < kMostRounds; ++round) {
-    const auto evidence = learn_evidence(problem, trusted, gate, placement);
+    const auto evidence = learn_evidence(problem, trusted, placement);
     const auto moved = relocate(problem, gate, evidence, options, among, placement);
     if (moved.empty()) break;
     stages.fit(narrow);

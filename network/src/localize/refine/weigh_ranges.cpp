@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "localize/evidence/crowd.hpp"
+#include "localize/evidence/evidence.hpp"
 #include "localize/refine/range_information.hpp"
 
 namespace isotherm::network::detail {
@@ -28,16 +30,9 @@ bool between_placed(const RangeProblem& problem, const Placement& placement, std
   return are_placed(placement, problem.ranges[k].from, problem.ranges[k].to);
 }
 
-RangeMixture first_model(const RangeProblem& problem, bool too_long) {
-  RangeMixture model;
-  for (const auto& range : problem.ranges) model.longest = std::max(model.longest, range.distance);
-  model.excess = typical_excess(problem.typical_sigma, model.longest);
-  if (!too_long) leave_out_too_long(model);
-  return model;
-}
-
 // Weights and evidence where the nodes are.
-void assess(const RangeProblem& problem, const Placement& placement, WeighedRanges& weighed) {
+void assess(const RangeProblem& problem, const Absence& absence, const Placement& placement,
+            WeighedRanges& weighed) {
   weighed.weighs.assign(problem.ranges.size(), false);
   weighed.information.assign(problem.ranges.size(), 0.0);
   double cost =
@@ -51,36 +46,41 @@ void assess(const RangeProblem& problem, const Placement& placement, WeighedRang
     weighed.information[k] = loss.curvature;
     weighed.weighs[k] = loss.curvature * noise > kWeighs;
   }
+  cost += 0.5 * absence_cost(problem, absence, placement);
   RangeInformation information(problem, weighed.weighs, placement, weighed.information);
   weighed.evidence = -cost - 0.5 * information.log_determinant();
 }
 
-WeighedRanges weigh(const RangeProblem& problem, const LocalizeOptions& options,
-                    const RangeMixture& start, bool too_long, Placement& placement) {
+WeighedRanges weigh(const RangeProblem& problem, const Absence& absence,
+                    const LocalizeOptions& options, const RangeMixture& start, bool too_long,
+                    Placement& placement) {
   WeighedRanges weighed;
   weighed.model = start;
   weighed.too_long = too_long;
-  weighed.outcome = refine_mixture(problem, too_long, options.max_iterations, options.progress,
-                                   weighed.model, placement);
-  assess(problem, placement, weighed);
+  weighed.outcome = refine_mixture(problem, absence, too_long, options.max_iterations,
+                                   options.progress, weighed.model, placement);
+  assess(problem, absence, placement, weighed);
   return weighed;
 }
 
 }  // namespace
 
-WeighedRanges weigh_ranges(const RangeProblem& problem, const LocalizeOptions& options,
-                           Placement& placement) {
+WeighedRanges weigh_ranges(const RangeProblem& problem, const Absence& absence,
+                           const LocalizeOptions& options, Placement& placement) {
   auto place_without = placement;
-  auto with = weigh(problem, options, first_model(problem, true), true, placement);
-  auto without = weigh(problem, options, first_model(problem, false), false, place_without);
+  const auto without_excess = first_mixture(problem, placement, false);
+  auto with =
+      weigh(problem, absence, options, first_mixture(problem, placement, true), true, placement);
+  auto without = weigh(problem, absence, options, without_excess, false, place_without);
   if (with.evidence >= without.evidence) return with;
   placement = std::move(place_without);
   return without;
 }
 
-WeighedRanges weigh_ranges_again(const RangeProblem& problem, const LocalizeOptions& options,
-                                 const WeighedRanges& before, Placement& placement) {
-  return weigh(problem, options, before.model, before.too_long, placement);
+WeighedRanges weigh_ranges_again(const RangeProblem& problem, const Absence& absence,
+                                 const LocalizeOptions& options, const WeighedRanges& before,
+                                 Placement& placement) {
+  return weigh(problem, absence, options, before.model, before.too_long, placement);
 }
 
 std::vector<JudgedRange> judge_ranges(const RangeProblem& problem, const WeighedRanges& weighed,

@@ -20,13 +20,15 @@ struct WeighedRanges {
 };
 
 /// Moves the placed nodes to where the ranges are likeliest, each being correct, too long or
-/// anything. Whether any are too long is what has more evidence. @throws Cancelled, NumericalError
-WeighedRanges weigh_ranges(const RangeProblem& problem, const LocalizeOptions& options,
-                           Placement& placement);
+/// anything, and others absent. Whether any are too long is what has more evidence. @throws
+/// Cancelled, NumericalError
+WeighedRanges weigh_ranges(const RangeProblem& problem, const Absence& absence,
+                           const LocalizeOptions& options, Placement& placement);
 
 /// The same from what was found before, with kinds of range that are the same.
-WeighedRanges weigh_ranges_again(const RangeProblem& problem, const LocalizeOptions& options,
-                                 const WeighedRanges& before, Placement& placement);
+WeighedRanges weigh_ranges_again(const RangeProblem& problem, const Absence& absence,
+                                 const LocalizeOptions& options, const WeighedRanges& before,
+                                 Placement& placement);
 
 /// What each range is, given all others: one a range, without probabilities where nothing checks
 /// it.

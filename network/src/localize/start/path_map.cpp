@@ -6,6 +6,7 @@
 #include <queue>
 #include <utility>
 
+#include "localize/problem/absence.hpp"
 #include "localize/problem/classical_scaling.hpp"
 #include "localize/problem/point_grid.hpp"
 #include "localize/refine/refine.hpp"
@@ -112,11 +113,10 @@ void match_size(const RangeProblem& problem, const std::vector<bool>& trusted,
 // The map as a body of springs.
 class Unfolding {
  public:
-  Unfolding(const RangeProblem& problem, const std::vector<bool>& trusted, const Absence& absence,
-            Errors errors, const LocalizeOptions& options, Placement& placement)
+  Unfolding(const RangeProblem& problem, const std::vector<bool>& trusted, Errors errors,
+            const LocalizeOptions& options, Placement& placement)
       : problem_(problem),
         trusted_(trusted),
-        reach_(absence.reach()),
         errors_(errors),
         options_(options),
         placement_(placement),
@@ -137,6 +137,7 @@ class Unfolding {
     constexpr int kRounds = 3;
     constexpr int kIterations = 5;
     for (int round = 0; round < kRounds; ++round) {
+      reach_ = Absence::learn(problem_, trusted_, placement_).reach();
       auto springs = ranges(width);
       add_repulsion(springs);
       refine(problem_, springs, placement_,
@@ -173,8 +174,8 @@ class Unfolding {
 
   const RangeProblem& problem_;
   const std::vector<bool>& trusted_;
-  double reach_;
   Errors errors_;
+  double reach_ = 0.0;
   const LocalizeOptions& options_;
   Placement& placement_;
   double sigma_;
@@ -183,23 +184,23 @@ class Unfolding {
 
 }  // namespace
 
-Placement map_by_paths(const RangeProblem& problem, const std::vector<bool>& trusted,
-                       const Absence& absence, Errors errors, double gate,
+Placement map_by_paths(const RangeProblem& problem, const std::vector<bool>& paths,
+                       const std::vector<bool>& trusted, Errors errors, double gate,
                        const LocalizeOptions& options) {
-  const auto nodes = largest_part(problem, trusted);
-  if (static_cast<int>(nodes.size()) <= problem.dimension + 1) {
+  const auto nodes = largest_part(problem, paths);
+  if (static_cast<int>(nodes.size()) <= problem.dimension) {
     return place_nodes(problem, {}, Eigen::MatrixXd(problem.dimension, 0));
   }
   auto placement =
-      place_nodes(problem, nodes, scale(choose_pilots(problem, trusted, nodes), problem.dimension));
-  match_size(problem, trusted, placement);
-  unfold(problem, trusted, absence, errors, gate, options, placement);
+      place_nodes(problem, nodes, scale(choose_pilots(problem, paths, nodes), problem.dimension));
+  match_size(problem, paths, placement);
+  unfold(problem, trusted, errors, gate, options, placement);
   return placement;
 }
 
-void unfold(const RangeProblem& problem, const std::vector<bool>& trusted, const Absence& absence,
-            Errors errors, double gate, const LocalizeOptions& options, Placement& placement) {
-  Unfolding(problem, trusted, absence, errors, options, placement).run(gate);
+void unfold(const RangeProblem& problem, const std::vector<bool>& trusted, Errors errors,
+            double gate, const LocalizeOptions& options, Placement& placement) {
+  Unfolding(problem, trusted, errors, options, placement).run(gate);
 }
 
 }  // namespace isotherm::network::detail

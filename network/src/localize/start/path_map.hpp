@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "isotherm/network/localize/localize.hpp"
-#include "localize/problem/absence.hpp"
 #include "localize/problem/range_problem.hpp"
 
 namespace isotherm::network::detail {
@@ -11,19 +10,19 @@ namespace isotherm::network::detail {
 /// On which side ranges may be wrong.
 enum class Errors { any, too_long };
 
-/// A map of the largest part that trusted pairs connect, in a frame of its own: shortest paths
-/// to pilot nodes and scaling (V. de Silva, J. Tenenbaum, "Sparse multidimensional scaling
-/// using landmark points", 2004), then springs whose loss narrows. Nodes nearer to
-/// each other than `absence.reach()` without a range repel each other, which opens
-/// folds. With `Errors::too_long` ranges shorter than the distance of their ends keep a wide loss.
+/// A map of the largest part that the pairs of `paths` connect, in a frame of its own: shortest
+/// paths to pilot nodes and scaling (V. de Silva, J. Tenenbaum, "Sparse multidimensional scaling
+/// using landmark points", 2004), then springs, of all trusted pairs, whose loss narrows. Nodes
+/// nearer to each other than `absence.reach()` without a range repel each other, which opens folds.
+/// With `Errors::too_long` ranges shorter than the distance of their ends keep a wide loss.
 /// O(pilots * ranges * log nodes) and the factorisations of the springs. Nothing is placed if
 /// there are too few nodes. @throws Cancelled
-Placement map_by_paths(const RangeProblem& problem, const std::vector<bool>& trusted,
-                       const Absence& absence, Errors errors, double gate,
+Placement map_by_paths(const RangeProblem& problem, const std::vector<bool>& paths,
+                       const std::vector<bool>& trusted, Errors errors, double gate,
                        const LocalizeOptions& options);
 
 /// The springs alone, on the placed nodes of any rough map.
-void unfold(const RangeProblem& problem, const std::vector<bool>& trusted, const Absence& absence,
-            Errors errors, double gate, const LocalizeOptions& options, Placement& placement);
+void unfold(const RangeProblem& problem, const std::vector<bool>& trusted, Errors errors,
+            double gate, const LocalizeOptions& options, Placement& placement);
 
 }  // namespace isotherm::network::detail

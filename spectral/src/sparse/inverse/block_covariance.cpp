@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 
+#include "isotherm/base/error.hpp"
 #include "sparse/dense_kernels.hpp"
 #include "sparse/inverse/front_inverses.hpp"
 #include "sparse/inverse/half_solve.hpp"
@@ -51,12 +52,10 @@ class PairInversion {
   void visit(Index front) {
     const auto L = tree_.values(front);
     const Eigen::Index width = L.cols();
-    MatrixXd root = MatrixXd::Identity(width, width);
-    detail::solve_lower(L.topRows(width), root);
-    MatrixXd eliminated = MatrixXd::Zero(width, width);
-    detail::add_transposed_product(eliminated, 1.0, root, root);
-    MatrixXd X = MatrixXd::Zero(L.rows() - width, width);
-    detail::add_product(X, 1.0, L.bottomRows(L.rows() - width), root);
+    MatrixXd eliminated = L.topRows(width);
+    detail::invert_from_factor(eliminated);
+    MatrixXd X = L.bottomRows(L.rows() - width);
+    detail::solve_lower_from_right(L.topRows(width), X);
     const Front Z = inverses_.enter(front, {eliminated.data(), X.data()});
     for (Index k = 0; k < tree_.width(front); ++k) {
       diagonal_[tree_.block(front, k)] = Z.template block<Dof, Dof>(k * Dof, k * Dof);
@@ -148,6 +147,9 @@ template <int Dof>
 std::vector<PairCovariance<Dof>> pair_covariances(const BlockCholesky& factor,
                                                   std::span<const std::pair<Index, Index>> pairs) {
   if (pairs.empty()) return {};
+  if (factor.block_count() > 0 && factor.supernodes().values.empty()) {
+    throw NumericalError("cholesky", "covariances without a factor");
+  }
   return PairInversion<Dof>(factor, pairs).run();
 }
 

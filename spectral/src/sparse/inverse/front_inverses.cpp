@@ -40,7 +40,7 @@ void invert_large_front(const EliminatedFront<Scalar>& eliminated, View inverse,
   auto below = inverse.bottomLeftCorner(outside, width);
   below.setZero();
   add_product(below, -1.0, inverse.bottomRightCorner(outside, outside), x);
-  add_transposed_product(inverse.topLeftCorner(width, width), -1.0, x, below);
+  add_symmetric_product(inverse.topLeftCorner(width, width), -1.0, x, below);
   inverse.topRightCorner(width, outside) = below.transpose();
 }
 

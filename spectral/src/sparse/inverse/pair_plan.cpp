@@ -73,16 +73,22 @@ void PairPlan::choose_half_solved(const FrontTree& tree, std::span<const Pair> p
   std::vector<double> saved(fronts, 0.0);
   std::vector<double> row_cost(fronts, 0.0);  // of one row of blocks of L^-1
   for (Index f = 0; f < fronts; ++f) {
+    double carried = 0.0;
     for (const std::size_t k : meeting_at(f)) {
       const Index a = tree.front_of(pairs[k].first);
       const Index b = tree.front_of(pairs[k].second);
-      saved[f] += to_root[a] + to_root[b] - 2.0 * to_root[f];
-      if (a != f && b != f) saved[f] += 2.0 * tree.size(f) * tree.size(f);
+      carried += to_root[a] + to_root[b] - 2.0 * to_root[f];
+      if (a != f && b != f) carried += 2.0 * tree.size(f) * tree.size(f);
       row_cost[f] += 1.0;
     }
-    saved[f] -= tree.width(f) * row_cost[f];
+    products_ += carried;
+    saved[f] += carried - tree.width(f) * row_cost[f];
     const Index p = tree.parent(f);
-    if (!wanted_[f] || p == FrontTree::kNone) continue;
+    if (!wanted_[f]) continue;
+    if (p == FrontTree::kNone) {
+      products_ -= std::max(0.0, saved[f]);
+      continue;
+    }
     saved[p] += std::max(0.0, saved[f]);
     row_cost[p] += row_cost[f] + entries(f);
   }

@@ -1,5 +1,6 @@
 #include "prune/consensus/climb/assessment.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -39,6 +40,24 @@ class AssessmentOf : public testing::Test {
   typename Objective<Pose>::NearByClass last_{};
 };
 
+// Where odometry is poor a loop has little to be held against: what is left of a step would count
+// many times over there.
+template <class Pose>
+void expect_settled_standings(std::uint64_t seed) {
+  Random random(seed);
+  const auto graph = random_loop_graph<Pose>(random, 60, 8, 1.0).graph;
+  const Objective<Pose> objective(graph, edge_roles(graph), 20);
+  Assessment<Pose> assessment(objective);
+  Explanation<Pose> now{.accepted = std::vector<bool>(8, true), .scale = {1e4, 1e-3}};
+  now.weights.assign(8, 1.0);
+  assessment.assess(now);
+  const auto standings = now.standings;
+  for (int again = 0; again < 3; ++again) assessment.assess(now);
+  for (std::size_t k = 0; k < standings.size(); ++k) {
+    EXPECT_NEAR(standings[k].log_odds, now.standings[k].log_odds, 1.0) << k << " of " << seed;
+  }
+}
+
 using Poses = testing::Types<Pose2, Pose3>;
 TYPED_TEST_SUITE(AssessmentOf, Poses);
 
@@ -57,6 +76,29 @@ TYPED_TEST(AssessmentOf, KnowsWhatIsNearAtTheSameLoopsAlike) {
   const auto held = this->last_;
   this->times_found({0, 40}, false);
   EXPECT_EQ(held, this->last_);
+}
+
+TYPED_TEST(AssessmentOf, SettlesUntilStandingsDo) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) expect_settled_standings<TypeParam>(seed);
+}
+
+// Weights and shares take turns, each the best given the other.
+TYPED_TEST(AssessmentOf, FindsMoreEvidenceEachTime) {
+  using Pose = TypeParam;
+  for (const double scale :
+       {1.0, 1.0 / 3.0, 1.0 / 30.0}) {  // sharper than stated: loops of all kinds
+    Assessment<Pose> assessment(this->objective_);
+    Explanation<Pose> now{.accepted = std::vector<bool>(this->kLoops, true), .scale = {1.0, scale}};
+    now.shares.loops = {20.0, 10.0, 10.0, 0.0};
+    now.weights.assign(this->kLoops, 1.0);
+    assessment.assess(now);
+    for (int again = 0; again < 9; ++again) {
+      const double before = now.evidence;
+      now.shares = now.found;
+      assessment.assess(now);
+      EXPECT_GT(now.evidence, before - 1e-2) << scale;
+    }
+  }
 }
 
 }  // namespace

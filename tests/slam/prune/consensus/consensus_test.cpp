@@ -72,9 +72,17 @@ TEST(Consensus, LearnsHowAccurateLoopsAre) {
   Random random(33);
   auto made = random_loop_graph<Pose2>(random, 300, 200, 1.0);
   const auto roles = edge_roles(made.graph);
-  for (const Index k : roles.candidates) made.graph.constraints[k].information *= 4.0;
+  double chi2 = 0.0;  // of all loops at the truth
+  for (const Index k : roles.candidates) {
+    auto& loop = made.graph.constraints[k];
+    loop.information *= 4.0;
+    const Pose2 truth = made.truth[loop.from].inverse() * made.truth[loop.to];
+    const Pose2::Tangent error = (loop.T_from_to.inverse() * truth).log();
+    chi2 += error.dot(loop.information * error);
+  }
+  const double drawn = chi2 / (Pose2::kDof * static_cast<double>(roles.candidates.size()));
   const auto result = consensus(made.graph, roles);
-  EXPECT_NEAR(result.loop_scale, 4.0, 1.0);
+  EXPECT_NEAR(result.loop_scale / drawn, 1.0, 0.25) << drawn;
   EXPECT_NEAR(result.odometry_scale, 1.0, 0.3);
 }
 
@@ -270,7 +278,7 @@ TYPED_TEST(ConsensusOf, LearnsThatInformationIsOverconfident) {
     made.graph.constraints[k].information *= 4.0;  // half the true deviations
   }
   const auto result = consensus(made.graph, edge_roles(made.graph), {.significance = 1e-6});
-  EXPECT_NEAR(result.loop_scale, 4.0, 1.0);
+  EXPECT_NEAR(result.loop_scale, 4.0, 1.0) << result.share_of_worse << " L " << result.log_evidence;
   EXPECT_LT(result.odometry_scale, 1.5);
   EXPECT_GE(count(result.verdicts, Verdict::keep), 148);
 }

@@ -14,21 +14,42 @@ namespace isotherm::slam::detail {
 namespace {
 
 TEST(ScaleShares, AreAsLikelyAsAnyOrderOfTheLoopsSays) {
-  // Of each kind 3 and 2: 3! 2! / 6!, one order of 5 by a uniform share.
-  EXPECT_NEAR((ScaleShares{{3.0, 2.0}}).log_evidence(), std::log(6.0 * 2.0 / 720.0), 1e-12);
+  // 3, 2 and none of shares (1, 1/3, 1/3, 1/3): 1 2 3 (1/3 4/3) / (2 3 4 5 6), one after the other.
+  EXPECT_NEAR((ScaleShares{{3.0, 2.0, 0.0, 0.0}}).log_evidence(),
+              std::log(6.0 * (4.0 / 9.0) / 720.0), 1e-12);
   EXPECT_NEAR(ScaleShares{}.log_evidence(), 0.0, 1e-12);
 }
 
-TEST(ScaleMixture, ExpectsWhatWasFoundAndOneOfEachKind) {
-  const auto mixture = expected_mixture(0.25, {{6.0, 2.0}});
+TEST(ScaleMixture, ExpectsWhatWasFoundAndWhatIsKnownBefore) {
+  const auto mixture = expected_mixture(1e-3, {{6.0, 2.0, 0.0, 0.0}});
   EXPECT_NEAR(mixture.log_share[0], std::log(0.7), 1e-12);
-  EXPECT_NEAR(mixture.log_share[1], std::log(0.3), 1e-12);
-  EXPECT_DOUBLE_EQ(mixture.relative[1] * mixture.scale, 1.0) << "as the file states";
+  EXPECT_NEAR(mixture.log_share[1], std::log(7.0 / 30.0), 1e-12);
+  EXPECT_NEAR(mixture.log_share[3], std::log(1.0 / 30.0), 1e-12);
+  EXPECT_NEAR(mixture.share_of_worse(), 0.3, 1e-12);
+}
+
+TEST(ScaleShares, GoFromScaleToScaleWithMost) {
+  const auto wider = wider_most({{8.0, 4.0, 2.0, 1.0}});
+  EXPECT_EQ(wider.shares.loops, (ByScale{12.0, 2.0, 0.0, 1.0}));
+  EXPECT_DOUBLE_EQ(wider.factor, 3.0);
+  const auto widest = all_as_worst({{1.0, 2.0, 4.0, 1.0}});
+  EXPECT_EQ(widest.shares.loops, (ByScale{7.0, 0.0, 0.0, 1.0}));
+  EXPECT_DOUBLE_EQ(widest.factor, 9.0);
+  const auto sharper = sharper_most({{8.0, 4.0, 2.0, 1.0}});
+  EXPECT_EQ(sharper.shares.loops, (ByScale{4.0, 4.0, 6.0, 1.0}));
+  EXPECT_DOUBLE_EQ(sharper.factor, 1.0 / 3.0);
+}
+
+TEST(ScaleMixture, GoesAsFarAsTheFileStates) {
+  EXPECT_DOUBLE_EQ(expected_mixture(1e-5, {}).relative.back() * 1e-5, 1.0);
+  const auto nearer = expected_mixture(0.2, {{6.0, 2.0, 0.0, 0.0}});
+  EXPECT_NEAR(std::exp(nearer.log_share[2]), 2.0 / 30.0, 1e-12) << "stated counts among the worst";
+  EXPECT_EQ(std::exp(nearer.log_share[3]), 0.0);
 }
 
 TEST(ErrorScale, BoundsTheLogOfTheMixtureTightly) {
   constexpr int kDof = 3;
-  const auto mixture = expected_mixture(0.01, {{9.0, 1.0}});
+  const auto mixture = expected_mixture(0.01, {{9.0, 0.0, 1.0}});
   for (const double chi2 : {0.0, 3.0, 30.0, 300.0}) {
     const auto scale = error_scale(mixture, chi2, kDof);
     double bound = scale.evidence - 0.5 * scale.weight * chi2;
@@ -43,9 +64,10 @@ TEST(ErrorScale, BoundsTheLogOfTheMixtureTightly) {
 }
 
 TEST(ErrorScale, WeighsALoopLessTheFartherOutItIs) {
-  const auto mixture = expected_mixture(0.01, {{9.0, 1.0}});
+  const auto mixture = expected_mixture(0.01, {{99.0, 0.0, 1.0}});
   EXPECT_NEAR(error_scale(mixture, 1.0, 3.0).weight, 1.0, 0.01);
-  EXPECT_NEAR(error_scale(mixture, 100.0, 3.0).weight, 0.01, 1e-6);
+  EXPECT_NEAR(error_scale(mixture, 30.0, 3.0).weight, 1.0 / 9.0, 0.05);
+  EXPECT_NEAR(error_scale(mixture, 1000.0, 3.0).weight, 0.01, 1e-6);
 }
 
 template <class Pose>
@@ -66,16 +88,15 @@ TYPED_TEST(LoopGainOf, IsTheLogDensityOfTheMixture) {
   for (int k = 0; k < 20; ++k) {
     typename Pose::Tangent r;
     for (double& entry : r) entry = 0.1 * random.normal();
-    const Matrix C = spread(0.05);
+    const Matrix P = spread(0.05);
     const Matrix Sigma = spread(0.1);
-    const auto mixture = expected_mixture(0.04, {{5.0, 1.0}});
-    const Matrix J = residual_jacobian<Pose>(r);
+    const auto mixture = expected_mixture(0.04, {{5.0, 1.0, 2.0}});
     double density = 0.0;
     for (std::size_t j = 0; j < kScaleCount; ++j) {
-      const Matrix S = J * C * J.transpose() + mixture.scale * mixture.relative[j] * Sigma;
+      const Matrix S = P + mixture.scale * mixture.relative[j] * Sigma;
       density += std::exp(mixture.log_share[j] + log_normal<Pose>(r, S));
     }
-    const auto gain = loop_gain<Pose>(predict<Pose>(r, C, Sigma), mixture);
+    const auto gain = loop_gain<Pose>(predict<Pose>(r, P, Sigma), mixture);
     EXPECT_NEAR(gain.log_density, std::log(density), 1e-8);
   }
 }
@@ -85,10 +106,10 @@ TYPED_TEST(LoopGainOf, IntegratesOverScalesThatAreNotKnown) {
   using Pose = TypeParam;
   using Matrix = typename Pose::Matrix;
   const typename Pose::Tangent r = Pose::Tangent::Constant(0.4);
-  const Matrix C = 0.01 * Matrix::Identity();
+  const Matrix P = 0.01 * Matrix::Identity();
   const Matrix Sigma = 0.02 * Matrix::Identity();
-  const auto mixture = expected_mixture(0.5, {{3.0, 1.0}});
-  const auto prediction = predict<Pose>(r, C, Sigma);
+  const auto mixture = expected_mixture(0.5, {{3.0, 1.0, 0.0}});
+  const auto prediction = predict<Pose>(r, P, Sigma);
   const CovarianceScale deviation = {1.2, 0.8};
   constexpr double kStep = 0.1;
   double sum = 0.0;
@@ -97,10 +118,9 @@ TYPED_TEST(LoopGainOf, IntegratesOverScalesThatAreNotKnown) {
     for (double y = -6.0; y < 6.0; y += kStep) {
       const double weight = std::exp(-0.5 * (x * x + y * y));
       all += weight;
-      const Matrix J = residual_jacobian<Pose>(r);
-      const Matrix known = std::exp(deviation.odometry * x) * J * C * J.transpose();
+      const Matrix known = std::exp(deviation.odometry * x) * P;
       for (std::size_t j = 0; j < kScaleCount; ++j) {
-        const double own = j == 0 ? 0.5 * std::exp(deviation.loops * y) : 1.0;
+        const double own = mixture.scale * mixture.relative[j] * std::exp(deviation.loops * y);
         const Matrix S = known + own * Sigma;
         sum += weight * std::exp(mixture.log_share[j] + log_normal<Pose>(r, S));
       }
@@ -118,11 +138,9 @@ TYPED_TEST(LoopGainOf, TakesTheLoopOutOfWhatAllSay) {
   const Matrix Sigma = 0.5 * Matrix::Identity() + 0.1 * Matrix::Ones();
   const Matrix others = 0.3 * Matrix::Identity() + 0.2 * Matrix::Ones();
   constexpr double kPrecision = 2.5;
-  const Matrix J_inverse = residual_jacobian<Pose>(r).inverse();
   const Matrix all = (others.inverse() + kPrecision * Sigma.inverse()).inverse();
-  const auto prediction =
-      predict_without<Pose>(r, J_inverse * all * J_inverse.transpose(), Sigma, kPrecision);
-  const auto gain = loop_gain<Pose>(prediction, expected_mixture(1.0, {}));
+  const auto prediction = predict_without<Pose>(r, all, Sigma, kPrecision);
+  const auto gain = loop_gain<Pose>(prediction, expected_mixture(1.0, {{1e12, 0.0, 0.0}}));
   // The residual is fitted by all of them: without the loop it is (1 - gain)^-1 as long.
   const typename Pose::Tangent out = others * all.inverse() * r;
   EXPECT_NEAR(gain.log_density, log_normal<Pose>(out, Sigma + others), 1e-9);

@@ -67,8 +67,7 @@ struct LocalizeOptions {
   /// Scale the standard deviations of the ranges by a common factor found from their
   /// residuals. Ranges without one always get theirs this way.
   bool estimate_noise = true;
-  /// Most members of a local map, >= 5. Larger maps are harder to fold and cost its
-  /// cube.
+  /// Networks of no more nodes are one neighbourhood, of which the heat kernel says nothing; >= 5.
   int patch_size = 32;
   int max_iterations = 100;  ///< of a refinement, >= 1
   int threads = 0;           ///< 0: all cores; results do not depend on it
@@ -92,7 +91,8 @@ void visit_fields(Options& options, Visitor&& visit) {
         open(0, 1));
   visit("merge_repeats", options.merge_repeats, "take the median of ranges between two nodes");
   visit("estimate_noise", options.estimate_noise, "scale standard deviations by the residuals");
-  visit("patch_size", options.patch_size, "most nodes of a local map", closed(5, 1000));
+  visit("patch_size", options.patch_size, "networks of no more nodes are not judged by heat",
+        closed(5, 1000));
   visit("max_iterations", options.max_iterations, "most iterations of a refinement",
         closed(1, 1e6));
 }
@@ -131,15 +131,15 @@ struct LocalizeResult {
 
 /// Positions, covariances, and a verdict on every range.
 ///
-/// Heat-kernel pruning, first maps (patches stitched by rotation synchronisation, shortest paths
-/// unfolded by springs, or cliques grown), robust refinement, then the maximum of the joint density
-/// of all ranges, each of which may be correct, too long or anything:
-/// docs/concepts/localization.md. Where most nodes near each other have a range, places beside
-/// nodes without one count as less likely. Landmarks of the network with a position are the
-/// anchors; they do not move. Without anchors the largest part is placed in a frame of its own, and
-/// covariances are those of the shape (minimal trace). With anchors in too small a number, or on
-/// one line (plane), nodes whose mirror image fits as well get that status and no position.
-/// Memory O(nodes + ranges) apart from the fill of a sparse factorisation.
+/// Heat-kernel pruning, maps by shortest paths that springs unfold, moves of nodes and mirrored
+/// parts as long as the map becomes likelier, then the maximum of the joint density of all ranges,
+/// each of which may be correct, too long or anything: docs/concepts/localization.md. Where most
+/// nodes near each other have a range, places beside nodes without one count as less likely.
+/// Landmarks of the network with a position are the anchors; they do not move. Without anchors the
+/// largest part is placed in a frame of its own, and covariances are those of the shape (minimal
+/// trace). With anchors in too small a number, or on one line (plane), nodes whose mirror image
+/// fits as well get that status and no position. Memory O(nodes + ranges) apart from the fill of a
+/// sparse factorisation.
 /// @throws InvalidArgument for options out of range, or a network with a range that
 ///   is negative, not finite, from a node to itself or to one that does not exist;
 ///   NumericalError, Cancelled.

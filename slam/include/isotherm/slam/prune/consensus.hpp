@@ -82,8 +82,8 @@ struct ConsensusResult {
   std::vector<double> odometry_scales;
   std::vector<double> loop_scales;
   double rotation_scale = 1.0;  ///< of loops, rotation's against translation's
-  /// Of the loops, those that are as accurate as the file states and not as most turn out to be.
-  double share_as_stated = 0.0;
+  /// Of the loops, those that are less accurate than most.
+  double share_of_worse = 0.0;
   bool settled = true;  ///< false: max_rounds ended a climb
 };
 

@@ -5,13 +5,14 @@
 #include <span>
 #include <utility>
 
+#include "prune/consensus/objective/log_odds.hpp"
 #include "prune/consensus/objective/loop_gain.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
 
 constexpr int kMostSteps = 12;        // of Gauss-Newton, weights included
-constexpr double kSameWeight = 0.05;  // of its log
+constexpr double kSameWeight = 0.05;  // of logs, root mean square
 constexpr double kHopeless = 50.0;  // log odds against, by a bound, beyond which none is solved for
 constexpr int kFixedPointSteps = 30;
 
@@ -108,7 +109,9 @@ template <class Pose>
 void Assessment<Pose>::find_peak(Explanation<Pose>& now) {
   weigh_new(now);
   estimate_.weigh_loops(now.weights);
-  estimate_.settle(now.accepted, now.scale, kMostSteps, [&] { return reweigh(now); });
+  bool believed = false;
+  estimate_.settle(now.accepted, now.scale, kMostSteps,
+                   [&] { return reweigh(now, !std::exchange(believed, true)); });
 }
 
 // Loops accepted since the last assessment, by what the others said of them.
@@ -123,12 +126,16 @@ void Assessment<Pose>::weigh_new(Explanation<Pose>& now) {
   }
 }
 
-// Whether any weight changed.
+// Whether weights changed, by so much as matters or `anyway`. Else all stay those that the factor
+// was formed with, and what was found with them: of other weights the evidence would be off by
+// their change times the squared error, and so it is by the square of the change.
 template <class Pose>
-bool Assessment<Pose>::reweigh(Explanation<Pose>& now) {
-  bool changed = false;
-  now.found = {};
-  now.scale_evidence = 0.0;
+bool Assessment<Pose>::reweigh(Explanation<Pose>& now, bool anyway) {
+  double change = 0.0;
+  double count = 0.0;
+  std::vector<double> weights = now.weights;
+  ScaleShares found;
+  double evidence = 0.0;
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
     if (!now.accepted[k]) continue;
     const auto& link = graph().loops[k];
@@ -136,13 +143,19 @@ bool Assessment<Pose>::reweigh(Explanation<Pose>& now) {
     const double chi2 =
         r.dot(link.information * r) / now.scale.loops + uncertainty(now, static_cast<Index>(k));
     const ErrorScale scale = error_scale(found_.mixture, chi2, Pose::kDof);
-    changed = changed || std::abs(std::log(scale.weight / now.weights[k])) > kSameWeight;
-    now.weights[k] = scale.weight;
-    now.scale_evidence += scale.evidence;
-    for (std::size_t j = 0; j < kScaleCount; ++j) now.found.loops[j] += scale.probability[j];
+    const double step = std::log(scale.weight / now.weights[k]);
+    change += step * step;
+    count += 1.0;
+    weights[k] = scale.weight;
+    evidence += scale.evidence;
+    found.add(scale);
   }
+  if (!anyway && change <= kSameWeight * kSameWeight * count) return false;
+  now.weights = std::move(weights);
+  now.found = found;
+  now.scale_evidence = evidence;
   estimate_.weigh_loops(now.weights);
-  return changed;
+  return change > 0.0;
 }
 
 // What is expected of the squared length of the error beyond that at the peak, in deviations: P is
@@ -150,8 +163,7 @@ bool Assessment<Pose>::reweigh(Explanation<Pose>& now) {
 template <class Pose>
 double Assessment<Pose>::uncertainty(const Explanation<Pose>& now, Index loop) const {
   const auto& link = graph().loops[loop];
-  const auto J = residual_jacobian<Pose>(estimate_.residual(link));
-  const Matrix P = link.information * (J * found_.covariances[loop] * J.transpose());
+  const Matrix P = link.information * found_.covariances[loop];
   const double held = found_.held.empty() ? 0.0 : found_.held[loop];
   const double more = now.weights[loop] / now.scale.loops - held;
   const double most = Pose::kDof / now.weights[loop];  // where nothing else is known
@@ -190,7 +202,7 @@ void Assessment<Pose>::predict(Explanation<Pose>& now) {
     }
     const auto [first, second] = estimate_.parts(graph().loops[k]);
     if (!alone && first == second) solved.push_back(loop);
-    found_.covariances[k] = graph().odometry_covariance[k] * now.scale.odometry;
+    found_.covariances[k] = odometry_says(loop, now.scale.odometry);
     standing.evidence = 0.0;
   }
   solve(now, solved, !alone);
@@ -199,6 +211,13 @@ void Assessment<Pose>::predict(Explanation<Pose>& now) {
     if (now.accepted[k]) found_.held[k] = now.weights[k] / now.scale.loops;
   }
   found_.held_scale = now.scale.odometry;
+}
+
+// The covariance of a loop's residual where nothing but odometry is known.
+template <class Pose>
+typename Pose::Matrix Assessment<Pose>::odometry_says(Index loop, double scale) const {
+  const auto J = residual_jacobian<Pose>(estimate_.residual(graph().loops[loop]));
+  return scale * J * graph().odometry_covariance[loop] * J.transpose();
 }
 
 // Covariances of these loops, and unless odometry is on its own what it tells of its accuracy.
@@ -210,7 +229,7 @@ void Assessment<Pose>::solve(Explanation<Pose>& now, const std::vector<Index>& l
   if (odometry) {
     for (const auto& step : graph().steps) links.push_back(&step);
   }
-  const auto covariances = estimate_.relative_covariances(links);
+  const auto covariances = estimate_.residual_covariances(links);
   for (std::size_t i = 0; i < loops.size(); ++i) found_.covariances[loops[i]] = covariances[i];
   OdometryComponent<Pose> told;
   if (odometry) {
@@ -238,8 +257,7 @@ template <class Pose>
 typename Pose::Tangent Assessment<Pose>::redundancy(const Explanation<Pose>& now,
                                                     Index loop) const {
   const auto& link = graph().loops[loop];
-  const auto J = residual_jacobian<Pose>(estimate_.residual(link));
-  const Matrix fitted = link.information * J * found_.covariances[loop] * J.transpose();
+  const Matrix fitted = link.information * found_.covariances[loop];
   return (1.0 - now.weights[loop] / now.scale.loops * fitted.diagonal().array()).max(0.0);
 }
 
@@ -296,7 +314,7 @@ void Assessment<Pose>::add_prior(Explanation<Pose>& now) const {
   for (int step = 0; step < kFixedPointSteps; ++step) {
     double kept = 1.0;
     for (std::size_t k = 0; k < standings.size(); ++k) {
-      kept += now.accepted[k] ? 1.0 : 1.0 / (1.0 + std::exp(-standings[k].evidence - prior));
+      kept += now.accepted[k] ? 1.0 : probability_of(standings[k].evidence + prior);
     }
     prior = std::log(kept / (2.0 + static_cast<double>(standings.size()) - kept));
   }

@@ -49,7 +49,7 @@ class Assessment {
     ScaleMixture mixture;
     typename Objective<Pose>::NearByClass near{};
     std::optional<std::size_t> near_of;  // loops that were accepted then; none: to be found anew
-    std::vector<Matrix> covariances;     // of T_a^-1 T_b, one a loop; with it where it is accepted
+    std::vector<Matrix> covariances;     // of residuals, one a loop; with it where it is accepted
     // Factors on the information of the loops that the covariances are given; none where empty.
     std::vector<double> held;
     double held_scale = 0.0;  // of odometry
@@ -67,7 +67,7 @@ class Assessment {
   const ReducedGraph<Pose>& graph() const noexcept { return found_.graph->reduced; }
 
   /// How much of each coordinate of an accepted loop is left to tell how accurate it is:
-  /// diag(I - w Omega J C J').
+  /// diag(I - w Omega P), P the residual's covariance.
   typename Pose::Tangent redundancy(const Explanation<Pose>& now, Index loop) const;
 
   /// log of the density that a loop's is held against.
@@ -81,11 +81,12 @@ class Assessment {
   void find_nearness(const Explanation<Pose>& now);
   double ceiling(Explanation<Pose>& now) const;
   double evidence(const Explanation<Pose>& now) const;
-  bool reweigh(Explanation<Pose>& now);
+  bool reweigh(Explanation<Pose>& now, bool anyway);
   double uncertainty(const Explanation<Pose>& now, Index loop) const;
   void weigh_new(Explanation<Pose>& now);
   bool bounds(const Explanation<Pose>& now) const;
   void predict(Explanation<Pose>& now);
+  Matrix odometry_says(Index loop, double scale) const;
   void solve(Explanation<Pose>& now, const std::vector<Index>& loops, bool odometry);
   void weigh(Explanation<Pose>& now);
   void find_redundancy(Explanation<Pose>& now) const;

@@ -1,6 +1,7 @@
 #include "prune/consensus/climb/climb.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -10,15 +11,13 @@
 namespace isotherm::slam::detail {
 namespace {
 
-// Nats by which an explanation must be better to go on, and nats a loop for a lesson to matter.
+// Nats by which an explanation must be better to go on.
 constexpr double kBetter = 0.1;
-constexpr double kTelling = 2e-3;
 // Moves in a row that may find nothing better, or nothing that would lead in as many to the highest
 // peak of earlier climbs.
 constexpr int kPatience = 8;
 // Times as many loops have more to tell of how accurate they are.
 constexpr std::size_t kMoreTelling = 2;
-constexpr double kOtherwise = 10.0;  // factor on variances that is worth a try
 
 bool is_part(const std::vector<bool>& part, const std::vector<bool>& whole) {
   for (std::size_t k = 0; k < part.size(); ++k) {
@@ -225,13 +224,15 @@ template <class Pose>
 bool Climb<Pose>::weigh_otherwise() {
   const double redundancy = now_.redundancy.odometry.sum() + now_.redundancy.loops.sum();
   if (!options_.calibrate || redundancy < 1.0) return false;  // nothing tells
-  for (const Trial trial : {Trial::wider_loops, Trial::sharper_loops}) {
-    if (failed_[trial]) continue;
-    const double factor = trial == Trial::wider_loops ? kOtherwise : 1.0 / kOtherwise;
-    const CovarianceScale scale{now_.scale.odometry, now_.scale.loops * factor};
-    if (try_scales(scale, now_.shapes, now_.shares)) return true;
-    failed_[trial] = true;
+  if (failed_[Trial::wide_loops]) return false;
+  const auto [factor, shares] = all_as_worst(now_.shares);
+  const CovarianceScale scale{now_.scale.odometry, now_.scale.loops * factor};
+  if (std::log(scale.loops) < kMostScale &&
+      most_gain_of_wider(factor, assessment_, now_) > kBetter &&
+      try_scales(scale, now_.shapes, shares)) {
+    return true;
   }
+  failed_[Trial::wide_loops] = true;
   return false;
 }
 
@@ -309,8 +310,7 @@ template <class Pose>
 bool Climb<Pose>::learn_more_than(double gain) {
   if (!options_.calibrate) return false;
   learnt_from_ = std::max<std::size_t>(accepted_count(), 1);
-  const double telling = kTelling * static_cast<double>(accepted_count());
-  const double least = std::max({gain, kBetter, telling});
+  const double least = std::max(gain, kBetter);
   for (const Trial trial : {Trial::lesson, Trial::lesson_of_scales}) {
     if (failed_[trial]) continue;
     const Lesson<Pose> found = learn(assessment_, now_, trial == Trial::lesson_of_scales);

@@ -53,7 +53,7 @@ class Climb {
   bool settled() const noexcept { return settled_; }
 
  private:
-  enum Trial { lesson, lesson_of_scales, wider_loops, sharper_loops };
+  enum Trial { lesson, lesson_of_scales, wide_loops };
 
   using Layout = typename Estimate<Pose>::Layout;
 
@@ -104,7 +104,7 @@ class Climb {
   std::size_t longest_ = 0;       // of earlier climbs
   std::vector<bool> dropped_;     // since the climb last rose; not tried again
   std::size_t learnt_from_ = 0;   // loops, at the last lesson
-  std::array<bool, 4> failed_{};  // trials of other scales here; not repeated until a change
+  std::array<bool, 3> failed_{};  // trials of other scales here; not repeated until a change
   std::vector<ConsensusMove> moves_;
   bool settled_ = true;
 };

@@ -1,11 +1,11 @@
 #include "prune/consensus/climb/groups.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <numeric>
 
 #include "graph/find_root.hpp"
+#include "prune/consensus/objective/log_odds.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -16,7 +16,7 @@ constexpr double kMostExpectedFalse = 0.5;
 constexpr double kFalseShare = 1e-3;
 
 // Every loop accepted sharpens what is predicted of the rest and tells how accurate they are.
-constexpr std::size_t kGrowth = 30;
+constexpr std::size_t kGrowth = 10;
 
 // Parents of a forest for find_root().
 std::vector<Index> each_by_itself(std::size_t count) {
@@ -91,7 +91,7 @@ Group most_certain(std::vector<Group> groups, std::size_t accepted) {
   const double most_false =
       std::max(kMostExpectedFalse, kFalseShare * static_cast<double>(accepted));
   for (const auto& [members, gain, parts] : groups) {
-    expected_false += 1.0 / (1.0 + std::exp(gain));
+    expected_false += probability_of(-gain);
     const bool many =
         all.loops.size() + members.size() > kGrowth * std::max<std::size_t>(accepted, 1);
     if (!all.loops.empty() && (many || expected_false > most_false)) break;

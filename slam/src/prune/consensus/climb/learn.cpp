@@ -11,13 +11,11 @@
 namespace isotherm::slam::detail {
 namespace {
 
-// Beyond, double precision has no digits left for the rest of the graph.
-const double kMostScale = std::log(1e8);
 // Of a coordinate against the others: a deviation of the prior. Contracted odometry is no longer
 // linear within deviations that are farther apart.
 constexpr double kMostOwn = kScaleDeviation;
 constexpr double kLeastRedundancy = 1e-6;  // less is rounding
-constexpr int kRepetitions = 10;           // of expectation maximisation, from the prior
+constexpr int kRepetitions = 10;           // of expectation maximisation
 
 // The log of the likeliest factor on variances of this cost and redundancy, to first order about
 // cost over redundancy, drawn towards zero by the prior. Of nothing redundant nothing is told.
@@ -111,35 +109,49 @@ std::vector<Residual<Pose>> residuals_of(const Assessment<Pose>& assessment,
   return residuals;
 }
 
-// A residual counts as far as it is redundant: the rest of it was fitted.
+// Weighs them by what is expected of each; how many are of which scale then. A residual counts as
+// far as it is redundant: the rest of it was fitted.
 template <class Pose>
-ScaleShares likeliest_shares(const std::vector<Residual<Pose>>& residuals, double scale) {
+ScaleShares weigh(const ScaleMixture& mixture, std::vector<Residual<Pose>>& residuals) {
   ScaleShares shares;
-  for (int k = 0; k < kRepetitions; ++k) {
-    const ScaleMixture mixture = expected_mixture(scale, shares);
-    shares = {};
-    for (const auto& residual : residuals) {
-      const ErrorScale error = error_scale(mixture, residual.chi2() / scale, residual.redundancy);
-      for (std::size_t j = 0; j < kScaleCount; ++j) {
-        shares.loops[j] += error.probability[j] * residual.redundancy / Pose::kDof;
-      }
-    }
+  for (auto& residual : residuals) {
+    const double chi2 = residual.chi2() / mixture.scale;
+    const ErrorScale error = error_scale(mixture, chi2, residual.redundancy);
+    residual.weight = error.weight;
+    shares.add(error, residual.redundancy / Pose::kDof);
   }
   return shares;
 }
 
+// The likeliest, and residuals weighed by them, at a scale of most that is learnt with them.
+template <class Pose>
+ScaleShares likeliest_from(const ScaleShift& start, double scale,
+                           std::vector<Residual<Pose>>& residuals) {
+  ScaleShares shares = start.shares;
+  double log_scale = std::log(scale * start.factor);
+  double redundancy = 0.0;
+  for (const auto& residual : residuals) redundancy += residual.redundancy;
+  for (int k = 0; k < kRepetitions; ++k) {
+    shares = weigh(expected_mixture(std::exp(log_scale), shares), residuals);
+    double cost = 0.0;
+    for (const auto& residual : residuals) cost += residual.weight * residual.chi2();
+    log_scale = std::clamp(drawn_in(cost, redundancy), -kMostScale, kMostScale);
+  }
+  return shares;
+}
+
+// With all shares integrated out, as Objective::evidence() has it.
 template <class Pose>
 double log_likelihood(const ScaleMixture& mixture, const std::vector<Residual<Pose>>& residuals) {
   double sum = 0.0;
+  ScaleShares found;
   for (const auto& residual : residuals) {
     const double chi2 = residual.chi2() / mixture.scale;
     const ErrorScale error = error_scale(mixture, chi2, residual.redundancy);
     sum += error.evidence - 0.5 * error.weight * chi2;
-    for (std::size_t j = 0; j < kScaleCount; ++j) {
-      sum += error.probability[j] * mixture.log_share[j];
-    }
+    found.add(error);
   }
-  return sum;
+  return sum + found.log_evidence();
 }
 
 // By coordinate, or where correlations leave one of them a negative cost by part.
@@ -153,15 +165,16 @@ std::pair<double, Tangent> scale_and_shape(const Tangent& logs) {
   return {std::exp(logs.mean()), (logs.array() - logs.mean()).exp()};
 }
 
-}  // namespace
-
+// From this scale called that of most, with these residuals of loops; what they gain is not yet
+// against how likely they were before.
 template <class Pose>
-Lesson<Pose> learn(const Assessment<Pose>& assessment, const Explanation<Pose>& explanation,
-                   bool same_shapes) {
+Lesson<Pose> lesson_from(const ScaleShift& start, const Explanation<Pose>& explanation,
+                         std::vector<Residual<Pose>> residuals, bool same_shapes) {
   using Tangent = typename Pose::Tangent;
   const auto& [scale, shapes, redundancy] =
       std::tie(explanation.scale, explanation.shapes, explanation.redundancy);
-  auto residuals = residuals_of(assessment, explanation);
+  Lesson<Pose> lesson;
+  lesson.shares = likeliest_from(start, scale.loops, residuals);
   Tangent loops_cost = Tangent::Zero();
   for (const auto& residual : residuals) loops_cost += residual.weight * residual.parts;
   const Component<Tangent> odometry{explanation.odometry_cost.cwiseProduct(shapes.odometry),
@@ -172,22 +185,51 @@ Lesson<Pose> learn(const Assessment<Pose>& assessment, const Explanation<Pose>& 
   const Tangent odometry_now = told_apart<Pose>(odometry).likeliest(odometry_before, same_shapes);
   const Tangent loops_now = told_apart<Pose>(loops).likeliest(loops_before, same_shapes);
 
-  Lesson<Pose> lesson;
   std::tie(lesson.scale.odometry, lesson.shapes.odometry) = scale_and_shape(odometry_now);
   std::tie(lesson.scale.loops, lesson.shapes.loops) = scale_and_shape(loops_now);
   lesson.gain = odometry.evidence(odometry_now) - odometry.evidence(odometry_before) +
                 log_scale_peak(loops_now, redundancy.loops) -
                 log_scale_peak(loops_before, redundancy.loops) -
-                0.5 * redundancy.loops.dot(loops_now - loops_before) -
-                log_likelihood(expected_mixture(scale.loops, explanation.shares), residuals);
+                0.5 * redundancy.loops.dot(loops_now - loops_before);
   const Tangent change = lesson.shapes.loops.cwiseQuotient(shapes.loops);
   for (auto& residual : residuals) residual.parts = residual.parts.cwiseQuotient(change);
-  lesson.shares = likeliest_shares(residuals, lesson.scale.loops);
+  const ScaleMixture mixture = expected_mixture(lesson.scale.loops, lesson.shares);
+  lesson.shares = weigh(mixture, residuals);
   lesson.gain += log_likelihood(expected_mixture(lesson.scale.loops, lesson.shares), residuals);
   return lesson;
 }
 
+}  // namespace
+
+template <class Pose>
+Lesson<Pose> learn(const Assessment<Pose>& assessment, const Explanation<Pose>& explanation,
+                   bool same_shapes) {
+  const auto residuals = residuals_of(assessment, explanation);
+  const ScaleShares& shares = explanation.shares;
+  Lesson<Pose> best = lesson_from({1.0, shares}, explanation, residuals, same_shapes);
+  for (const ScaleShift& other : {wider_most(shares), sharper_most(shares)}) {
+    const auto lesson = lesson_from(other, explanation, residuals, same_shapes);
+    if (lesson.gain > best.gain) best = lesson;
+  }
+  best.gain -= log_likelihood(expected_mixture(explanation.scale.loops, shares), residuals);
+  return best;
+}
+
+template <class Pose>
+double most_gain_of_wider(double factor, const Assessment<Pose>& assessment,
+                          const Explanation<Pose>& explanation) {
+  double cost = assessment.estimate().odometry_cost() / explanation.scale.odometry;
+  double redundancy = 0.0;
+  for (const auto& residual : residuals_of(assessment, explanation)) {
+    cost += residual.weight * residual.chi2() / explanation.scale.loops;
+    redundancy += residual.redundancy;
+  }
+  return 0.5 * ((1.0 - 1.0 / factor) * cost - redundancy * std::log(factor));
+}
+
 template Lesson<Pose2> learn(const Assessment<Pose2>&, const Explanation<Pose2>&, bool);
+template double most_gain_of_wider(double, const Assessment<Pose2>&, const Explanation<Pose2>&);
 template Lesson<Pose3> learn(const Assessment<Pose3>&, const Explanation<Pose3>&, bool);
+template double most_gain_of_wider(double, const Assessment<Pose3>&, const Explanation<Pose3>&);
 
 }  // namespace isotherm::slam::detail

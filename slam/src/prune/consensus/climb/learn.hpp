@@ -16,11 +16,20 @@ struct Lesson {
 /// The factors on the covariances of odometry, of loops and of each of their coordinates at which
 /// the evidence is highest, to first order: variance components (Helmert), cost over redundancy,
 /// drawn towards the file by their prior (scale_prior.hpp). And the shares of loops as accurate as
-/// most and as stated under which the residuals are likeliest (expectation maximisation). To first
-/// order in the logs, so that with far other shapes a lesson may be worse: `same_shapes` learns
-/// factors on all coordinates alone.
+/// most and less under which the residuals are likeliest (expectation maximisation, from what
+/// is believed and from the scale above or below called that of most: it ends at the nearest peak).
+/// To first order in the logs, so that with far other shapes a lesson may be worse: `same_shapes`
+/// learns factors on all coordinates alone.
 template <class Pose>
 Lesson<Pose> learn(const Assessment<Pose>& assessment, const Explanation<Pose>& explanation,
                    bool same_shapes);
+
+/// No less than what the evidence can gain where all loops' variances are `factor` (> 1) times as
+/// large, whatever the map and odometry become then, in the linearised problem: the determinant's
+/// log is convex in those of the variances, and the least cost concave in their inverses, and
+/// of a tree of odometry zero where loops say nothing.
+template <class Pose>
+double most_gain_of_wider(double factor, const Assessment<Pose>& assessment,
+                          const Explanation<Pose>& explanation);
 
 }  // namespace isotherm::slam::detail

@@ -61,7 +61,7 @@ void report(const std::vector<Explanation<Pose>>& found, double significance,
     verdict.verdict =
         verdict_of(best.accepted[k], log_odds[k], decisive, many && standings[k].connected());
     verdict.stage = stage_of(best.accepted[k], standings[k].connected());
-    verdict.probability = 1.0 / (1.0 + std::exp(-log_odds[k]));
+    verdict.probability = probability_of(log_odds[k]);
     result.details.push_back({.probability = verdict.probability,
                               .evidence = standings[k].evidence,
                               .chi2 = standings[k].chi2,
@@ -74,8 +74,7 @@ void report(const std::vector<Explanation<Pose>>& found, double significance,
     result.loop_scales.push_back(best.scale.loops * best.shapes.loops[d]);
   }
   result.rotation_scale = rotation_against_translation<Pose>(best.shapes.loops);
-  result.share_as_stated =
-      std::exp(expected_mixture(best.scale.loops, best.shares).log_share.back());
+  result.share_of_worse = expected_mixture(best.scale.loops, best.shares).share_of_worse();
   result.log_evidence = best.evidence;
 }
 

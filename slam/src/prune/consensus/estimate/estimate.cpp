@@ -1,18 +1,70 @@
 #include "prune/consensus/estimate/estimate.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "isotherm/base/error.hpp"
 #include "isotherm/spectral/sparse/block_covariance.hpp"
+#include "isotherm/spectral/sparse/covariance_work.hpp"
+#include "isotherm/spectral/sparse/earlier_factor.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
 
-// Steps below this many standard deviations of the links they move do not matter.
-constexpr double kSettled = 0.1;
+// Steps below this many standard deviations of the links they move do not matter; what those below
+// one leave is of second order.
+constexpr double kSettled = 0.01;
+constexpr double kNear = 1.0;
 
 // Operations of a factorisation that take as long as to linearise one link (measured).
 constexpr double kFlopsOfLink = 5000.0;
+
+// Links that are linearised while one is ordered and analysed (measured).
+constexpr double kLinksOfAnalysis = 10.0;
+
+// An update factorises where it starts and where it ends, mostly.
+constexpr double kFactorisations = 2.0;
+
+using Pairs = std::vector<std::pair<Index, Index>>;
+
+Pairs joined_pairs(const Pairs& pairs, const Gauge& gauge) {
+  Pairs joined;
+  for (const auto& [a, b] : pairs) {
+    if (gauge.component[a] == gauge.component[b]) joined.emplace_back(a, b);
+  }
+  return joined;
+}
+
+// The equations of `used`, with room for the covariances of the `other` pairs where it takes less
+// to fill that in than to find them one by one.
+template <class Pose>
+NormalEquations<Pose> equations_for(const PoseGraph<Pose>& used, const Pairs& other) {
+  const Gauge gauge = fix_gauge(used);
+  const Pairs joined = joined_pairs(other, gauge);
+  Pairs rows;
+  for (const auto& [a, b] : joined) rows.emplace_back(gauge.variable[a], gauge.variable[b]);
+  const auto form = spectral::FactorForm::supernodal;
+  NormalEquations<Pose> sparse(used, gauge, {}, form);
+  const auto work = spectral::covariance_work(sparse.hessian(), rows);
+  const auto links = static_cast<double>(used.constraints.size() + joined.size());
+  if (work.pairs < kLinksOfAnalysis * kFlopsOfLink * links) return sparse;
+  NormalEquations<Pose> roomy(used, gauge, joined, form);
+  const auto filled = spectral::covariance_work(roomy.hessian(), rows);
+  const double more = kFactorisations * (roomy.hessian().flops() - sparse.hessian().flops()) +
+                      filled.fronts - work.fronts;
+  return more < work.pairs ? std::move(roomy) : std::move(sparse);
+}
+
+template <class Pose>
+Pairs other_pairs(const ReducedGraph<Pose>& graph, const std::vector<bool>& accepted) {
+  Pairs pairs;
+  for (std::size_t k = 0; k < accepted.size(); ++k) {
+    const auto& loop = graph.loops[k];
+    if (!accepted[k] && loop.a != loop.b) pairs.emplace_back(loop.a, loop.b);
+  }
+  return pairs;
+}
 
 }  // namespace
 
@@ -23,17 +75,25 @@ Estimate<Pose>::Estimate(const ReducedGraph<Pose>& graph, Pace pace)
 template <class Pose>
 void Estimate<Pose>::use(const ReducedGraph<Pose>& graph) {
   graph_ = &graph;
-  equations_.reset();
+  factorised_ = false;
+  move_.resize(0);
 }
 
 template <class Pose>
 void Estimate<Pose>::lay_out(const std::vector<bool>& accepted) {
-  if (equations_ && accepted == laid_out_for_) return;
+  const bool same = equations_ && accepted == laid_out_for_;
+  if (same && factorised_) return;
   const PoseGraph<Pose> used = used_links(accepted);
   join_components(used);
-  equations_.emplace(used, spectral::FactorForm::supernodal);
+  move_.resize(0);
+  if (same) {
+    equations_->measure(used);
+  } else {
+    equations_.emplace(equations_for(used, other_pairs(*graph_, accepted)));
+    has_factor_ = false;
+    laid_out_for_ = accepted;
+  }
   component_ = equations_->gauge().component;
-  laid_out_for_ = accepted;
 }
 
 template <class Pose>
@@ -44,11 +104,19 @@ void Estimate<Pose>::linearize(const CovarianceScale& scale) {
     if (link >= step_count && !weights_.empty()) weight *= weights_[used_loops_[link - step_count]];
     return EdgeScaling{weight, weight, 0.0};
   };
+  linearized_ = poses_;
   equations_->linearize(poses_, scaling);
+  factorised_ = false;
+  if (pace_) pace_(work());
+}
+
+template <class Pose>
+void Estimate<Pose>::factorise() {
+  has_factor_ = false;
   if (!equations_->hessian().factorise()) {
     throw NumericalError("consensus", "the normal equations are not positive definite");
   }
-  if (pace_) pace_(work());
+  has_factor_ = factorised_ = true;
 }
 
 template <class Pose>
@@ -57,14 +125,25 @@ double Estimate<Pose>::work() const {
          equations_->hessian().flops() / kFlopsOfLink;
 }
 
-// Whether it was one that does not matter. The Newton decrement is the squared length of the
-// step in deviations.
+// Gauss-Newton's, by the factor of an earlier one where that is near enough.
 template <class Pose>
-bool Estimate<Pose>::step() {
-  const Eigen::VectorXd move = equations_->hessian().solve(-equations_->gradient());
-  const double decrement = -move.dot(equations_->gradient());
-  equations_->retract(move, poses_);
-  return decrement < kSettled * kSettled * static_cast<double>(1 + used_loops_.size());
+Eigen::VectorXd Estimate<Pose>::next_move() {
+  if (has_factor_ && !factorised_) {
+    auto move = spectral::solve_by_earlier_factor(equations_->hessian(), -equations_->gradient());
+    if (move) return *std::move(move);
+  }
+  if (!factorised_) factorise();
+  return equations_->hessian().solve(-equations_->gradient());
+}
+
+// Its length in deviations of a link (root mean square): the Newton decrement is the squared
+// length.
+template <class Pose>
+double Estimate<Pose>::step() {
+  move_ = next_move();
+  const double decrement = -move_.dot(equations_->gradient());
+  equations_->retract(move_, poses_);
+  return std::sqrt(std::max(decrement, 0.0) / static_cast<double>(1 + used_loops_.size()));
 }
 
 template <class Pose>
@@ -77,24 +156,57 @@ template <class Pose>
 void Estimate<Pose>::settle(const std::vector<bool>& accepted, const CovarianceScale& scale,
                             int max_steps, const std::function<bool()>& reweigh) {
   lay_out(accepted);
-  for (int k = 0; k < max_steps; ++k) {
+  bool weighed = false;
+  bool settled = false;
+  for (int k = 0; k < max_steps && !settled; ++k) {
     linearize(scale);
-    if (step() && !reweigh()) break;
+    const double length = step();
+    weighed = length < kNear;
+    settled = weighed && !reweigh() && length < kSettled;
   }
-  reweigh();
+  if (settled && factorised_) return;
+  if (!weighed) reweigh();
   linearize(scale);
+  factorise();
+  step();
 }
 
 template <class Pose>
 void Estimate<Pose>::restore(Layout layout) {
   poses_ = std::move(layout.poses);
   component_ = std::move(layout.component);
-  equations_.reset();
+  factorised_ = false;
+  move_.resize(0);
+}
+
+// Of a residual, by the poses at its ends, where the factor was formed.
+template <class Pose>
+struct Estimate<Pose>::Derivative {
+  Tangent residual;
+  Matrix by_a;
+  Matrix by_b;
+};
+
+// d(T_a^-1 T_b) = -Ad d_a + d_b, with Ad the adjoint of T_b_a.
+template <class Pose>
+typename Estimate<Pose>::Derivative Estimate<Pose>::derivative(const Link<Pose>& link) const {
+  const Pose T_a_b = linearized_[link.a].inverse() * linearized_[link.b];
+  const Tangent r = (link.T_a_b.inverse() * T_a_b).log();
+  const Matrix J = residual_jacobian<Pose>(r);
+  return {r, -J * T_a_b.inverse().adjoint(), J};
 }
 
 template <class Pose>
 typename Pose::Tangent Estimate<Pose>::residual(const Link<Pose>& link) const {
-  return (link.T_a_b.inverse() * (poses_[link.a].inverse() * poses_[link.b])).log();
+  if (move_.size() == 0) {
+    return (link.T_a_b.inverse() * (poses_[link.a].inverse() * poses_[link.b])).log();
+  }
+  auto [r, by_a, by_b] = derivative(link);
+  const Index a = equations_->gauge().variable[link.a];
+  const Index b = equations_->gauge().variable[link.b];
+  if (a >= 0) r += by_a * move_.template segment<Pose::kDof>(a * Pose::kDof);
+  if (b >= 0) r += by_b * move_.template segment<Pose::kDof>(b * Pose::kDof);
+  return r;
 }
 
 template <class Pose>
@@ -102,9 +214,8 @@ std::pair<Index, Index> Estimate<Pose>::parts(const Link<Pose>& loop) const {
   return {component_[loop.a], component_[loop.b]};
 }
 
-// d(T_a^-1 T_b) = -Ad d_a + d_b, with Ad the adjoint of T_b_a.
 template <class Pose>
-std::vector<typename Pose::Matrix> Estimate<Pose>::relative_covariances(
+std::vector<typename Pose::Matrix> Estimate<Pose>::residual_covariances(
     std::span<const Link<Pose>* const> links) const {
   const std::vector<Index>& variable = equations_->gauge().variable;
   std::vector<std::pair<Index, Index>> pairs;
@@ -117,10 +228,10 @@ std::vector<typename Pose::Matrix> Estimate<Pose>::relative_covariances(
   std::vector<Matrix> covariances;
   covariances.reserve(links.size());
   for (std::size_t k = 0; k < links.size(); ++k) {
-    const Matrix adjoint = (poses_[links[k]->b].inverse() * poses_[links[k]->a]).adjoint();
-    const Matrix across = adjoint * known[k].cross;
-    covariances.push_back(adjoint * known[k].first * adjoint.transpose() + known[k].second -
-                          across - across.transpose());
+    const auto [r, by_a, by_b] = derivative(*links[k]);
+    const Matrix across = by_a * known[k].cross * by_b.transpose();
+    covariances.push_back(by_a * known[k].first * by_a.transpose() +
+                          by_b * known[k].second * by_b.transpose() + across + across.transpose());
   }
   return covariances;
 }

@@ -48,8 +48,8 @@ class Estimate {
   /// @throws NumericalError if the normal equations break down
   void update(const std::vector<bool>& accepted, const CovarianceScale& scale, int max_steps);
 
-  /// The same, until weights settle too: whenever poses have, `reweigh` may call weigh_loops(),
-  /// and says whether any weight changed.
+  /// The same, until weights settle too: whenever poses nearly have, `reweigh` may call
+  /// weigh_loops(), and says whether it did.
   void settle(const std::vector<bool>& accepted, const CovarianceScale& scale, int max_steps,
               const std::function<bool()>& reweigh);
 
@@ -68,16 +68,18 @@ class Estimate {
   /// Takes poses back to where they were; update() must follow.
   void restore(Layout layout);
 
-  /// log(T_measured^-1 T_a^-1 T_b).
+  /// log(T_measured^-1 T_a^-1 T_b): after an update that of the least-squares problem linearised
+  /// where its factor was formed, so that both agree to rounding. Where little but a loop itself
+  /// measures, what is left of its residual is a small part of what others would leave.
   Tangent residual(const Link<Pose>& link) const;
 
   /// Numbers of the components that the ends of a loop lie on: the same where trusted and accepted
   /// links join them.
   std::pair<Index, Index> parts(const Link<Pose>& loop) const;
 
-  /// Covariances of T_a^-1 T_b, one each of `links`, as perturbations on the right, from
-  /// the factor of the last update. The ends of each must be connected.
-  std::vector<Matrix> relative_covariances(std::span<const Link<Pose>* const> links) const;
+  /// Covariances of the residuals of `links` where the factor of the last update was formed. The
+  /// ends of each must be connected.
+  std::vector<Matrix> residual_covariances(std::span<const Link<Pose>* const> links) const;
 
   /// r' Omega r summed over odometry, in units of the graph's covariances.
   double odometry_cost() const;
@@ -86,7 +88,7 @@ class Estimate {
   double log_determinant() const { return equations_->hessian().log_determinant(); }
 
   /// Whether nothing has changed since the last update.
-  bool is_factorised() const noexcept { return equations_.has_value(); }
+  bool is_factorised() const noexcept { return factorised_; }
 
   /// What was factorised by the last update; its variables are those of gauge().
   const spectral::BlockCholesky& factor() const { return equations_->hessian(); }
@@ -101,18 +103,26 @@ class Estimate {
  private:
   void lay_out(const std::vector<bool>& accepted);
   void linearize(const CovarianceScale& scale);
-  bool step();
+  void factorise();
+  Eigen::VectorXd next_move();
+  double step();
+  struct Derivative;
+  Derivative derivative(const Link<Pose>& link) const;
   PoseGraph<Pose> used_links(const std::vector<bool>& accepted);
   void join_components(const PoseGraph<Pose>& used);
 
   const ReducedGraph<Pose>* graph_;
   std::vector<Pose> poses_;
+  std::vector<Pose> linearized_;  // poses where the factor was formed
+  Eigen::VectorXd move_;          // from there to poses_; empty without a factor
   std::vector<Index> component_;
   std::vector<bool> laid_out_for_;  // loops that the equations hold, after all steps
   std::vector<Index> used_loops_;   // of laid_out_for_, those between different nodes
   std::vector<double> weights_;
   std::optional<NormalEquations<Pose>> equations_;
-  Pace pace_;  // after every factorisation
+  bool has_factor_ = false;  // the equations have one, if of other poses or weights
+  bool factorised_ = false;  // it is of these
+  Pace pace_;                // whenever the equations were set up
 };
 
 /// The part of log(T_measured^-1 T) that changes with T: J with

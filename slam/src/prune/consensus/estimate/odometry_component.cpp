@@ -9,14 +9,13 @@ namespace {
 template <class Pose>
 struct StepError {
   typename Pose::Tangent pull;  // Omega r
-  typename Pose::Matrix spare;  // Omega - Omega J C J' Omega / scale
+  typename Pose::Matrix spare;  // Omega - Omega P Omega / scale, P the residual's covariance
 };
 
 template <class Pose>
 StepError<Pose> step_error(const Link<Pose>& step, const typename Pose::Tangent& r,
-                           const typename Pose::Matrix& C, double scale) {
-  const auto J = residual_jacobian<Pose>(r);
-  const typename Pose::Matrix fitted = step.information * J * C * J.transpose();
+                           const typename Pose::Matrix& P, double scale) {
+  const typename Pose::Matrix fitted = step.information * P;
   return {step.information * r, step.information - fitted * step.information / scale};
 }
 

@@ -7,31 +7,67 @@
 namespace isotherm::slam::detail {
 namespace {
 
-constexpr double kPriorLoops = 1.0;  // of each kind
+// Of variances, from one scale to the next.
+constexpr double kStep = 3.0;
+constexpr double kWorst = kStep * kStep;
+constexpr double kNever = -1e9;  // log of no probability
+constexpr ByScale kPriorLoops = {1.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
 
-double found_and_prior(const ByScale& loops) {
-  return std::accumulate(loops.begin(), loops.end(), kPriorLoops * kScaleCount);
+// log (x (x + 1) ... (x + count - 1)), and between whole counts their mean: of all distributions of
+// a count with this mean, that has the least.
+double log_rising(double x, double count) {
+  const double whole = std::floor(count);
+  return std::lgamma(x + whole) - std::lgamma(x) + (count - whole) * std::log(x + whole);
 }
+
+double sum_of(const ByScale& loops) { return std::accumulate(loops.begin(), loops.end(), 0.0); }
 
 }  // namespace
 
+void ScaleShares::add(const ErrorScale& found, double part) {
+  for (std::size_t j = 0; j < kScaleCount; ++j) loops[j] += part * found.probability[j];
+}
+
 double ScaleShares::log_evidence() const {
-  double log_probability =
-      std::lgamma(kPriorLoops * kScaleCount) - std::lgamma(found_and_prior(loops));
-  for (const double found : loops) {
-    log_probability += std::lgamma(kPriorLoops + found) - std::lgamma(kPriorLoops);
+  const double before = sum_of(kPriorLoops);
+  double log_probability = std::lgamma(before) - std::lgamma(before + sum_of(loops));
+  for (std::size_t j = 0; j < kScaleCount; ++j) {
+    log_probability += log_rising(kPriorLoops[j], loops[j]);
   }
   return log_probability;
 }
 
+ScaleShift wider_most(const ScaleShares& shares) {
+  const auto& [most, worse, worst, stated] = shares.loops;
+  return {kStep, {{most + worse, worst, 0.0, stated}}};
+}
+
+ScaleShift sharper_most(const ScaleShares& shares) {
+  const auto& [most, worse, worst, stated] = shares.loops;
+  return {1.0 / kStep, {{0.5 * most, 0.5 * most, worse + worst, stated}}};
+}
+
+ScaleShift all_as_worst(const ScaleShares& shares) {
+  const auto& [most, worse, worst, stated] = shares.loops;
+  return {kWorst, {{most + worse + worst, 0.0, 0.0, stated}}};
+}
+
+// What the file states is a scale of its own only beyond the worst of the others.
 ScaleMixture expected_mixture(double scale, const ScaleShares& shares) {
-  ScaleMixture mixture{.scale = scale, .relative = {1.0, std::max(1.0, 1.0 / scale)}};
-  for (std::size_t j = 0; j < kScaleCount; ++j) {
-    mixture.log_share[j] =
-        std::log((kPriorLoops + shares.loops[j]) / found_and_prior(shares.loops));
+  ScaleMixture mixture{.scale = scale, .relative = {1.0, kStep, kWorst, 1.0 / scale}};
+  ByScale expected = kPriorLoops;
+  for (std::size_t j = 0; j < kScaleCount; ++j) expected[j] += shares.loops[j];
+  const double all = sum_of(expected);
+  for (std::size_t j = 0; j < kScaleCount; ++j) mixture.log_share[j] = std::log(expected[j] / all);
+  if (mixture.relative[3] <= kWorst) {
+    mixture.relative[3] = kWorst;
+    mixture.log_share[2] = std::log((expected[2] + expected[3]) / all);
+    mixture.log_share[3] = kNever;
   }
   return mixture;
 }
+
+double ScaleMixture::share_of_worse() const { return 1.0 - std::exp(log_share.front()); }
 
 ErrorScale error_scale(const ScaleMixture& mixture, const ByScale& log_density, double dof) {
   const double most = *std::ranges::max_element(log_density);

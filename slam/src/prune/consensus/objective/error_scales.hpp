@@ -5,28 +5,11 @@
 
 namespace isotherm::slam::detail {
 
-/// How accurate a loop is: as most turn out to be, or as the file states.
-inline constexpr std::size_t kScaleCount = 2;
+/// How accurate a loop is: as most are, or less, by three or nine times in the variance, or as the
+/// file states where that is less still. Against most first, so that the units of the file's
+/// information play next to no part.
+inline constexpr std::size_t kScaleCount = 4;
 using ByScale = std::array<double, kScaleCount>;
-
-/// How many loops are which. Of the shares nothing is known before (a Dirichlet distribution
-/// with one loop of each kind).
-struct ScaleShares {
-  ByScale loops{};  ///< how many were found of each scale, as expected
-
-  /// log of the probability of finding these.
-  double log_evidence() const;
-};
-
-/// What is expected of the next loop.
-struct ScaleMixture {
-  double scale = 1.0;  ///< on the stated covariance, of most
-  /// Scales against that of most; of the second that of the file, where most are more accurate.
-  ByScale relative{};
-  ByScale log_share{};
-};
-
-ScaleMixture expected_mixture(double scale, const ScaleShares& shares);
 
 /// What is believed of the scale of one loop.
 struct ErrorScale {
@@ -35,7 +18,46 @@ struct ErrorScale {
   double evidence = 0.0;  ///< mean of log(scale^(-dof/2) / probability)
 };
 
-/// From log densities at each scale, of any common factor. Scales are against that of most.
+/// How many loops are of which scale. Of the share of those that are worse than most nothing is
+/// known before, nor which of them is how much so (a Dirichlet distribution).
+struct ScaleShares {
+  ByScale loops{};  ///< how many were found of each scale, as expected
+
+  /// One more, or a part of one.
+  void add(const ErrorScale& found, double part = 1.0);
+
+  /// log of the probability of finding these, of parts a lower bound.
+  double log_evidence() const;
+};
+
+/// The same loops with another scale called that of most.
+struct ScaleShift {
+  double factor;  ///< on the variance of most
+  ScaleShares shares;
+};
+
+/// The next one: those of most are worse, or are called worse.
+ScaleShift wider_most(const ScaleShares& shares);
+
+/// One a step below, of which half of most are.
+ScaleShift sharper_most(const ScaleShares& shares);
+
+/// The worst, of which all are.
+ScaleShift all_as_worst(const ScaleShares& shares);
+
+/// What is expected of the next loop.
+struct ScaleMixture {
+  double scale = 1.0;  ///< on the stated covariance, of most
+  ByScale relative{};  ///< scales against that of most, ascending
+  ByScale log_share{};
+
+  /// Of those that are not as accurate as most.
+  double share_of_worse() const;
+};
+
+ScaleMixture expected_mixture(double scale, const ScaleShares& shares);
+
+/// From log densities at each scale, of any common factor.
 ErrorScale error_scale(const ScaleMixture& mixture, const ByScale& log_density, double dof);
 
 /// From the squared Mahalanobis distance that is expected of the error, at the scale of most.

@@ -9,7 +9,6 @@
 #include <Eigen/Eigenvalues>
 
 #include "prune/consensus/estimate/log_normal.hpp"
-#include "prune/consensus/objective/log_sum.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -58,12 +57,11 @@ Nodes log_fit(const typename Pose::Tangent& r, const typename Pose::Tangent& var
 }  // namespace
 
 template <class Pose>
-Prediction<Pose> predict(const typename Pose::Tangent& r, const typename Pose::Matrix& C,
+Prediction<Pose> predict(const typename Pose::Tangent& r, const typename Pose::Matrix& P,
                          const typename Pose::Matrix& Sigma) {
   using Matrix = typename Pose::Matrix;
   const Eigen::LLT<Matrix> root(Sigma);
-  const Matrix J = residual_jacobian<Pose>(r);
-  const Matrix half = root.matrixL().solve(J * C * J.transpose());
+  const Matrix half = root.matrixL().solve(P);
   const Matrix known = root.matrixL().solve(half.transpose());
   const Eigen::SelfAdjointEigenSolver<Matrix> axes(known);
   return {axes.eigenvectors().transpose() * root.matrixL().solve(r),
@@ -73,9 +71,9 @@ Prediction<Pose> predict(const typename Pose::Tangent& r, const typename Pose::M
 // Where all leave the variance v, the others leave v / (1 - precision v), and the residual against
 // them is as many times as long.
 template <class Pose>
-Prediction<Pose> predict_without(const typename Pose::Tangent& r, const typename Pose::Matrix& C,
+Prediction<Pose> predict_without(const typename Pose::Tangent& r, const typename Pose::Matrix& P,
                                  const typename Pose::Matrix& Sigma, double precision) {
-  Prediction<Pose> prediction = predict<Pose>(r, C, Sigma);
+  Prediction<Pose> prediction = predict<Pose>(r, P, Sigma);
   for (int d = 0; d < Pose::kDof; ++d) {
     const double redundancy = std::max(1.0 - precision * prediction.variance[d], kLeastShare);
     prediction.r[d] /= redundancy;
@@ -97,20 +95,19 @@ LoopGain loop_gain(const Prediction<Pose>& prediction, const ScaleMixture& mixtu
   const auto& [r, variance, log_sigma] = prediction;
   const Factors odometry = factors(deviation.odometry);
   const Factors own = factors(deviation.loops);
-  const Nodes stated = Nodes::Constant(1, mixture.scale * mixture.relative[1]);
-  std::array<Nodes, kScaleCount> by_odometry{odometry.log_weight, odometry.log_weight};
-  for (Eigen::Index i = 0; i < odometry.value.size(); ++i) {
-    const typename Pose::Tangent others = odometry.value[i] * variance;
-    by_odometry[0][i] +=
-        log_sum_of(own.log_weight + log_fit<Pose>(r, others, mixture.scale * own.value));
-    by_odometry[1][i] += log_fit<Pose>(r, others, stated)[0];
-  }
   ByScale density;
   for (std::size_t j = 0; j < kScaleCount; ++j) {
-    density[j] = mixture.log_share[j] + log_sum_of(by_odometry[j]);
+    const Nodes own_variance = mixture.scale * mixture.relative[j] * own.value;
+    Nodes by_odometry = odometry.log_weight;
+    for (Eigen::Index i = 0; i < odometry.value.size(); ++i) {
+      const typename Pose::Tangent others = odometry.value[i] * variance;
+      by_odometry[i] += log_sum_of(own.log_weight + log_fit<Pose>(r, others, own_variance));
+    }
+    density[j] = mixture.log_share[j] + log_sum_of(by_odometry);
   }
   LoopGain gain;
-  gain.log_density = log_sum(density[0], density[1]) - 0.5 * (log_sigma + Pose::kDof * kLog2Pi);
+  gain.log_density = log_sum_of(Nodes::Map(density.data(), kScaleCount)) -
+                     0.5 * (log_sigma + Pose::kDof * kLog2Pi);
   gain.chi2 = (r.array().square() / (variance.array() + mixture.scale)).sum();
   gain.weight = error_scale(mixture, density, Pose::kDof).weight;
   return gain;

@@ -15,14 +15,14 @@ struct Prediction {
   double log_sigma = 0.0;           ///< log |Sigma|, of the stated covariance
 };
 
-/// From an estimate without the loop: `C` is its covariance of T_a^-1 T_b, `r` its residual.
+/// From an estimate without the loop: `P` is its covariance of the residual `r`.
 template <class Pose>
-Prediction<Pose> predict(const typename Pose::Tangent& r, const typename Pose::Matrix& C,
+Prediction<Pose> predict(const typename Pose::Tangent& r, const typename Pose::Matrix& P,
                          const typename Pose::Matrix& Sigma);
 
 /// From one that includes the loop, with its information times `precision`.
 template <class Pose>
-Prediction<Pose> predict_without(const typename Pose::Tangent& r, const typename Pose::Matrix& C,
+Prediction<Pose> predict_without(const typename Pose::Tangent& r, const typename Pose::Matrix& P,
                                  const typename Pose::Matrix& Sigma, double precision);
 
 /// The same with the variances, up to those given, under which a loop with an error of its own of

@@ -30,7 +30,7 @@ struct Explanation {
   std::vector<bool> accepted;  ///< one a loop
   CovarianceScale scale;       ///< factors on the stated covariances; of loops, that of most
   Shapes<Pose> shapes;
-  ScaleShares shares;           ///< of loops as accurate as most and as stated, as believed
+  ScaleShares shares;           ///< of loops by how accurate they are, as believed
   ScaleShares found;            ///< the same, as found among the accepted ones
   std::vector<double> weights;  ///< of the loops' information, by their scales; one a loop
   double scale_evidence = 0.0;  ///< ErrorScale::evidence, summed over the accepted ones
@@ -51,10 +51,9 @@ struct Explanation {
 /// given odometry), f and k as in
 /// NearDensity, pi(A) the Beta-binomial of a fraction of which nothing is known. The scales are
 /// log-normal around what the file states (scale_prior.hpp) and integrated over by Laplace's
-/// approximation. Which loops are as accurate as most
-/// and which as stated (ScaleShares) is integrated out by variational Bayes (Bishop, Pattern
-/// Recognition and Machine Learning, 10.1), which gives a lower bound. A part that A joins to
-/// another lies anywhere on the map.
+/// approximation. Which loops are as accurate as most and which less (ScaleShares) is integrated
+/// out by variational Bayes (Bishop, Pattern Recognition and Machine Learning, 10.1), which gives a
+/// lower bound. A part that A joins to another lies anywhere on the map.
 ///
 /// The same number is what accepting the loops one by one adds (loop_gain), in any order.
 template <class Pose>

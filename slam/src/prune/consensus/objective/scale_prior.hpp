@@ -14,6 +14,10 @@ namespace isotherm::slam::detail {
 /// Deviation of each: that of a factor of ten in sigma.
 inline constexpr double kScaleDeviation = 2.0 * std::numbers::ln10;
 
+/// Of the log of any factor, either way. Beyond, double precision has no digits left for the rest
+/// of the graph.
+inline constexpr double kMostScale = 4.0 * kScaleDeviation;
+
 /// Deviation of the log of a factor of all coordinates that measurements of this redundancy tell.
 inline double scale_deviation(double redundancy) {
   return 1.0 / std::sqrt(0.5 * redundancy + 1.0 / (kScaleDeviation * kScaleDeviation));

@@ -85,9 +85,9 @@ class BlockCholesky {
   double flops() const;
 
   /// A = L L' by dense blocks of columns, which part no block of rows.
-  /// Valid until the next factorisation.
-  /// @throws InvalidArgument unless the form is supernodal; NumericalError without a
-  /// successful factorise() before.
+  /// Valid until the next factorisation. Without a successful factorise() before there
+  /// are no values.
+  /// @throws InvalidArgument unless the form is supernodal
   detail::Supernodes supernodes() const;
 
  private:

@@ -1,10 +1,12 @@
-#include "localize/fold/fold_trial.hpp"
+#include "localize/fold/part_move.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
+#include "isotherm/base/parallel.hpp"
+#include "localize/problem/point_grid.hpp"
 #include "localize/refine/refine.hpp"
 
 namespace isotherm::network::detail {
@@ -14,27 +16,28 @@ namespace {
 class Trial {
  public:
   Trial(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
-        const Evidence& evidence, const Crowd& crowd, const Placement& placement, const Fold& fold)
+        const Evidence& evidence, const Crowd& crowd, const Placement& placement,
+        const PartMove& move)
       : problem_(problem),
         trusted_(trusted),
         gate_(gate),
         evidence_(evidence),
         crowd_(crowd),
         placement_(placement),
-        fold_(fold) {
+        move_(move) {
     gather_nodes();
     gather_pairs();
   }
 
-  FoldOutcome run() {
+  MoveOutcome run() {
     if (!others_span_space()) return {};
     const double before = cost();
-    for (const Index v : fold_.part) {
-      const auto k = place_of(v);
-      local_.positions.col(k) = fold_.mirrored(local_.positions.col(k));
+    for (std::size_t k = 0; k < move_.part.size(); ++k) {
+      local_.positions.col(place_of(move_.part[k])) =
+          move_.positions.col(static_cast<Eigen::Index>(k));
     }
     relax();
-    FoldOutcome outcome;
+    MoveOutcome outcome;
     outcome.extra = cost() - before;
     const double apart = 4.0 * frame_.typical_sigma;
     std::vector<Eigen::Index> which;
@@ -75,13 +78,13 @@ class Trial {
   // The part and the neighbours that it is tied to are free; theirs are there, but stay. If
   // these do not span space nothing shows which of the two sides was mirrored.
   void gather_nodes() {
-    free_ = fold_.part;
-    visit_neighbours(fold_.part, [&](Index vertex, Index edge) {
+    free_ = move_.part;
+    visit_neighbours(move_.part, [&](Index vertex, Index edge) {
       const bool fits = squared_deviation(placement_, problem_.pairs[edge]) <= gate_;
       if (fits && !problem_.is_anchor[vertex]) free_.push_back(vertex);
     });
     make_set(free_);
-    if (!others_span_space()) free_ = fold_.part;
+    if (!others_span_space()) free_ = move_.part;
     nodes_ = free_;
     visit_neighbours(free_, [&](Index vertex, Index) { nodes_.push_back(vertex); });
     make_set(nodes_);
@@ -121,32 +124,49 @@ class Trial {
   void relax() {
     constexpr std::array<double, 3> kWidths = {4.0, 2.0, 1.0};  // of the gate
     constexpr int kIterations = 10;
+    constexpr double kStill = 1e-3;  // the next stage goes on from here
+    std::vector<Spring> springs;
+    for (const auto& pair : pairs_) {
+      springs.push_back({pair.from, pair.to, pair.distance, pair.sigma});
+    }
     for (const double factor : kWidths) {
-      const double width = factor * std::sqrt(gate_);
-      std::vector<Spring> springs;
-      for (const auto& pair : pairs_) {
-        springs.push_back({pair.from, pair.to, pair.distance, pair.sigma, width, width});
+      for (auto& spring : springs) {
+        spring.width_apart = spring.width_close = factor * std::sqrt(gate_);
       }
-      refine(frame_, springs, local_, {.max_iterations = kIterations});
+      refine(frame_, springs, local_, {.max_iterations = kIterations, .still = kStill});
+    }
+    add_absent(springs);
+    refine_likelihood(frame_, springs, evidence_, kIterations, local_);
+  }
+
+  void add_absent(std::vector<Spring>& springs) const {
+    const double reach = evidence_.absence.reach();
+    if (!(reach > 0.0)) return;
+    const auto wanted = [&](Index a, Index b) {
+      return !(frame_.is_anchor[a] && frame_.is_anchor[b]) &&
+             !has_range(problem_, nodes_[a], nodes_[b]);
+    };
+    for (const auto& [a, b] : near_pairs(local_.positions, reach, wanted)) {
+      springs.push_back({.from = a, .to = b, .couples = false, .absent = true});
     }
   }
 
   double cost() const {
     double sum = 0.0;
     for (const auto& pair : pairs_) {
-      const double r = deviation(local_, pair);
-      sum += std::min(r * r, evidence_.limits(r));
+      sum += evidence_.cost_of(pair.sigma)(deviation(local_, pair));
     }
-    for (std::size_t a = 0; a < free_.size(); ++a) {
-      const Point place = local_.positions.col(place_of(free_[a]));
-      sum += crowd_.absence_cost(free_[a], place, others_);
-      for (std::size_t b = a + 1; b < free_.size(); ++b) {
-        const double distance = (local_.positions.col(place_of(free_[b])) - place).norm();
-        if (distance >= evidence_.absence.reach() || has_range(problem_, free_[a], free_[b])) {
-          continue;
-        }
-        sum += evidence_.absence.cost(distance);
-      }
+    const double reach = evidence_.absence.reach();
+    if (!(reach > 0.0)) return sum;
+    PointGrid before(reach);  // those that have had their turn
+    for (const Index v : free_) {
+      const Point place = local_.positions.col(place_of(v));
+      sum += crowd_.absence_cost(v, place, others_);
+      before.visit_near(place, reach, [&](Index other, const Point& position) {
+        if (has_range(problem_, v, other)) return;
+        sum += evidence_.absence.cost((position - place).norm());
+      });
+      before.insert(v, place);
     }
     return sum;
   }
@@ -157,7 +177,7 @@ class Trial {
   const Evidence& evidence_;
   const Crowd& crowd_;
   const Placement& placement_;
-  const Fold& fold_;
+  const PartMove& move_;
   std::vector<Index> free_;       // nodes that move
   std::vector<Index> nodes_;      // all
   std::vector<bool> others_;      // placed nodes that do not move
@@ -168,10 +188,51 @@ class Trial {
 
 }  // namespace
 
-FoldOutcome try_fold(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
+MoveOutcome try_move(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
                      const Evidence& evidence, const Crowd& crowd, const Placement& placement,
-                     const Fold& fold) {
-  return Trial(problem, trusted, gate, evidence, crowd, placement, fold).run();
+                     const PartMove& move) {
+  return Trial(problem, trusted, gate, evidence, crowd, placement, move).run();
+}
+
+std::vector<MoveOutcome> gains(const RangeProblem& problem, const std::vector<bool>& trusted,
+                               double gate, const Evidence& evidence,
+                               const LocalizeOptions& options, const Placement& placement,
+                               const std::vector<PartMove>& moves) {
+  constexpr double kGain = 2.0;  // of the cost, for which a move is worth it
+  const Crowd crowd(problem, placement, evidence.absence);
+  std::vector<MoveOutcome> outcomes(moves.size());
+  parallel_for(static_cast<std::int64_t>(moves.size()), options.threads, options.progress, "parts",
+               [&](std::int64_t k) {
+                 outcomes[k] =
+                     try_move(problem, trusted, gate, evidence, crowd, placement, moves[k]);
+               });
+  std::erase_if(outcomes, [](const MoveOutcome& outcome) {
+    return outcome.extra >= -kGain || outcome.moved.empty();
+  });
+  std::stable_sort(outcomes.begin(), outcomes.end(),
+                   [](const MoveOutcome& a, const MoveOutcome& b) { return a.extra < b.extra; });
+  return outcomes;
+}
+
+std::vector<Index> take_moves(const RangeProblem& problem, const std::vector<MoveOutcome>& moves,
+                              Placement& placement) {
+  std::vector<bool> touched(problem.nodes, false);
+  std::vector<Index> moved;
+  for (const auto& move : moves) {
+    const bool overlaps =
+        std::any_of(move.moved.begin(), move.moved.end(), [&](Index v) { return touched[v]; });
+    if (overlaps) continue;
+    moved.insert(moved.end(), move.moved.begin(), move.moved.end());
+    for (std::size_t k = 0; k < move.moved.size(); ++k) {
+      const Index v = move.moved[k];
+      placement.positions.col(v) = move.positions.col(static_cast<Eigen::Index>(k));
+      touched[v] = true;
+      for (const auto& neighbour : problem.pair_graph.neighbours(v)) {
+        touched[neighbour.vertex] = true;
+      }
+    }
+  }
+  return moved;
 }
 
 }  // namespace isotherm::network::detail

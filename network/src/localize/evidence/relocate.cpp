@@ -1,0 +1,88 @@
+#include "localize/evidence/relocate.hpp"
+
+#include <optional>
+
+#include "isotherm/base/parallel.hpp"
+#include "localize/evidence/crowd.hpp"
+#include "localize/evidence/star.hpp"
+
+namespace isotherm::network::detail {
+namespace {
+
+constexpr double kGain = 2.0;  // of the cost, for which a move is worth it
+
+class Relocation {
+ public:
+  Relocation(const RangeProblem& problem, double gate, const Evidence& evidence,
+             Placement& placement)
+      : problem_(problem),
+        gate_(gate),
+        evidence_(evidence),
+        placement_(placement),
+        crowd_(problem, placement, evidence.absence) {}
+
+  // Whether another place may be better.
+  bool is_suspect(Index node) const {
+    if (problem_.is_anchor[node]) return false;
+    const auto ranges = star(problem_, evidence_, placement_, node);
+    if (static_cast<int>(ranges.arms.size()) <= problem_.dimension) return false;
+    if (!placement_.placed[node]) return true;
+    const Point place = placement_.positions.col(node);
+    return ranges.agreeing(place, gate_) < static_cast<int>(ranges.arms.size()) ||
+           crowd_.absence_cost(node, place, placement_.placed) > kGain;
+  }
+
+  std::optional<Multilateration> look(Index node) const {
+    return multilaterate(surroundings(node));
+  }
+
+  // Neighbours may have moved in the meantime: both places are judged anew.
+  bool move(Index node, const Multilateration& found) {
+    const auto around = surroundings(node);
+    const double cost = around.cost(found.position);
+    if (placement_.placed[node]) {
+      if (around.cost(placement_.positions.col(node)) - cost < kGain) return false;
+    } else {
+      if (found.rival_cost - cost < kGain) return false;
+      if (around.agreeing(found.position, gate_) <= problem_.dimension) return false;
+    }
+    placement_.positions.col(node) = found.position;
+    placement_.placed[node] = true;
+    return true;
+  }
+
+ private:
+  Star surroundings(Index node) const {
+    auto around = star(problem_, evidence_, placement_, node);
+    crowd_.add_strangers(around, node, placement_.placed);
+    return around;
+  }
+
+  const RangeProblem& problem_;
+  double gate_;
+  const Evidence& evidence_;
+  Placement& placement_;
+  Crowd crowd_;
+};
+
+}  // namespace
+
+std::vector<Index> relocate(const RangeProblem& problem, double gate, const Evidence& evidence,
+                            const LocalizeOptions& options, const std::vector<bool>& among,
+                            Placement& placement) {
+  Relocation relocation(problem, gate, evidence, placement);
+  std::vector<Index> suspects;
+  for (Index v = 0; v < problem.nodes; ++v) {
+    if (among[v] && relocation.is_suspect(v)) suspects.push_back(v);
+  }
+  std::vector<std::optional<Multilateration>> found(suspects.size());
+  parallel_for(static_cast<std::int64_t>(suspects.size()), options.threads, options.progress,
+               "multilateration", [&](std::int64_t k) { found[k] = relocation.look(suspects[k]); });
+  std::vector<Index> moved;
+  for (std::size_t k = 0; k < suspects.size(); ++k) {
+    if (found[k] && relocation.move(suspects[k], *found[k])) moved.push_back(suspects[k]);
+  }
+  return moved;
+}
+
+}  // namespace isotherm::network::detail

@@ -1,0 +1,74 @@
+#include "localize/fold/recombine.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "localize/refine/polish.hpp"
+
+namespace isotherm::network::detail {
+namespace {
+
+// Connected nodes of those that `differ`.
+std::vector<std::vector<Index>> connected_parts(const RangeProblem& problem,
+                                                const std::vector<bool>& trusted,
+                                                std::vector<bool> differ) {
+  std::vector<std::vector<Index>> parts;
+  for (Index v = 0; v < problem.nodes; ++v) {
+    if (!differ[v]) continue;
+    std::vector<Index> part = {v};
+    differ[v] = false;
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      for (const auto& [vertex, edge] : problem.pair_graph.neighbours(part[k])) {
+        if (!trusted[edge] || !differ[vertex]) continue;
+        differ[vertex] = false;
+        part.push_back(vertex);
+      }
+    }
+    std::sort(part.begin(), part.end());
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+}  // namespace
+
+std::vector<PartMove> differing_parts(const RangeProblem& problem, const std::vector<bool>& trusted,
+                                      const Placement& placement, const Placement& other) {
+  constexpr double kNoise = 4.0;  // standard deviations of a range
+  const Eigen::RowVectorXd apart = (placement.positions - other.positions).colwise().norm();
+  std::set<std::vector<Index>> parts;
+  for (double least = kNoise * problem.typical_sigma; least < problem.typical_distance;
+       least *= 2.0) {
+    std::vector<bool> differ(problem.nodes, false);
+    for (Index v = 0; v < problem.nodes; ++v) {
+      differ[v] =
+          placement.placed[v] && other.placed[v] && !problem.is_anchor[v] && apart[v] > least;
+    }
+    parts.merge([&] {
+      auto found = connected_parts(problem, trusted, std::move(differ));
+      return std::set<std::vector<Index>>(found.begin(), found.end());
+    }());
+  }
+  std::vector<PartMove> moves;
+  for (const auto& part : parts) moves.push_back({part, other.positions(Eigen::all, part)});
+  return moves;
+}
+
+bool recombine(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
+               const LocalizeOptions& options, const Placement& other, Placement& placement) {
+  constexpr int kMostRounds = 6;
+  bool any = false;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const auto evidence = learn_evidence(problem, trusted, placement);
+    const auto moves = differing_parts(problem, trusted, placement, other);
+    const auto moved = take_moves(
+        problem, gains(problem, trusted, gate, evidence, options, placement, moves), placement);
+    if (moved.empty()) break;
+    any = true;
+    polish(problem, trusted, gate, options, placement);
+  }
+  return any;
+}
+
+}  // namespace isotherm::network::detail

@@ -1,0 +1,31 @@
+#include "localize/refine/polish.hpp"
+
+#include <utility>
+
+#include "localize/evidence/evidence.hpp"
+#include "localize/evidence/relocate.hpp"
+#include "localize/refine/refine.hpp"
+
+namespace isotherm::network::detail {
+
+void polish(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
+            const LocalizeOptions& options, Placement& placement) {
+  constexpr int kMostRounds = 5;
+  const std::vector<bool> all(problem.nodes, true);
+  double reached = worth(problem, trusted, placement);
+  for (int round = 0; round < kMostRounds; ++round) {
+    auto next = placement;
+    auto evidence = learn_evidence(problem, trusted, next);
+    refine_mixture(problem, evidence.absence, true, options.max_iterations, options.progress,
+                   evidence.model, next);
+    evidence = learn_evidence(problem, trusted, next);
+    const auto moved = relocate(problem, gate, evidence, options, all, next);
+    const double now = worth(problem, trusted, next);
+    if (!(now > reached)) return;
+    placement = std::move(next);
+    reached = now;
+    if (moved.empty()) return;
+  }
+}
+
+}  // namespace isotherm::network::detail

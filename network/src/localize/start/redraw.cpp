@@ -1,0 +1,125 @@
+#include "localize/start/redraw.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "isotherm/base/parallel.hpp"
+#include "localize/start/anchor_frame.hpp"
+
+namespace isotherm::network::detail {
+namespace {
+
+// Steps from the middle of a region to its outermost nodes.
+constexpr int kSteps = 5;
+
+struct Region {
+  std::vector<Index> nodes;
+  std::vector<bool> outermost;  // one a node
+};
+
+// Placed nodes by steps over trusted pairs.
+Region region_around(const RangeProblem& problem, const std::vector<bool>& trusted,
+                     const Placement& placement, Index middle) {
+  Region region{{middle}, {}};
+  std::vector<bool> seen(problem.nodes, false);
+  seen[middle] = true;
+  std::size_t last = 0;  // the first node of the last step
+  for (int step = 0; step < kSteps; ++step) {
+    const std::size_t end = region.nodes.size();
+    for (std::size_t k = last; k < end; ++k) {
+      for (const auto& [vertex, edge] : problem.pair_graph.neighbours(region.nodes[k])) {
+        if (!trusted[edge] || seen[vertex] || !placement.placed[vertex]) continue;
+        seen[vertex] = true;
+        region.nodes.push_back(vertex);
+      }
+    }
+    last = end;
+  }
+  for (std::size_t k = 0; k < region.nodes.size(); ++k) region.outermost.push_back(k >= last);
+  return region;
+}
+
+// The region as a network of pairs; its outermost nodes, and anchors, are its anchors.
+struct Part {
+  RangeProblem problem;
+  std::vector<bool> trusted;
+  Placement placement;
+
+  Part(const RangeProblem& whole, const std::vector<bool>& trusted_pairs,
+       const Placement& everywhere, const Region& region) {
+    std::vector<Index> number(whole.nodes, -1);
+    for (const Index v : region.nodes) {
+      number[v] = problem.nodes++;
+      problem.is_anchor.push_back(whole.is_anchor[v] || region.outermost[number[v]]);
+    }
+    problem.dimension = whole.dimension;
+    problem.typical_distance = whole.typical_distance;
+    problem.typical_sigma = whole.typical_sigma;
+    std::vector<spectral::WeightedEdge> edges;
+    for (std::size_t p = 0; p < whole.pairs.size(); ++p) {
+      auto pair = whole.pairs[p];
+      pair.from = number[pair.from];
+      pair.to = number[pair.to];
+      if (pair.from < 0 || pair.to < 0) continue;
+      problem.pairs.push_back(pair);
+      edges.push_back({pair.from, pair.to, 1.0});
+      trusted.push_back(trusted_pairs[p]);
+    }
+    problem.pair_graph = spectral::WeightedGraph(problem.nodes, edges);
+    placement.positions = everywhere.positions(Eigen::all, region.nodes);
+    placement.placed.assign(region.nodes.size(), true);
+  }
+};
+
+}  // namespace
+
+Placement redraw(const RangeProblem& problem, const std::vector<bool>& trusted, Errors errors,
+                 double gate, const LocalizeOptions& options, const Placement& placement) {
+  std::vector<int> against(problem.nodes, 0);
+  for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
+    const auto& pair = problem.pairs[p];
+    if (!trusted[p] || !is_placed(placement, pair)) continue;
+    if (squared_deviation(placement, pair) <= gate) continue;
+    ++against[pair.from];
+    ++against[pair.to];
+  }
+  std::vector<Index> order;
+  for (Index v = 0; v < problem.nodes; ++v) {
+    if (against[v] > 0) order.push_back(v);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return against[a] > against[b]; });
+  std::vector<Region> regions;
+  std::vector<bool> drawn(problem.nodes, false);
+  for (const Index middle : order) {
+    if (drawn[middle]) continue;
+    regions.push_back(region_around(problem, trusted, placement, middle));
+    const auto& region = regions.back();
+    for (std::size_t k = 0; k < region.nodes.size(); ++k) {
+      if (!region.outermost[k]) drawn[region.nodes[k]] = true;
+    }
+  }
+  std::vector<Placement> maps(regions.size());
+  parallel_for(static_cast<std::int64_t>(regions.size()), options.threads, options.progress,
+               "regions", [&](std::int64_t k) {
+                 const Part part(problem, trusted, placement, regions[k]);
+                 auto free = part.problem;
+                 free.is_anchor.assign(free.nodes, false);
+                 auto quiet = options;
+                 quiet.progress = {};
+                 maps[k] = map_by_paths(free, part.trusted, part.trusted, errors, gate, quiet);
+                 if (!align_to_anchors(part.problem, part.placement, maps[k])) maps[k] = {};
+               });
+  auto result = placement;
+  for (std::size_t k = 0; k < regions.size(); ++k) {
+    if (maps[k].placed.empty()) continue;
+    for (std::size_t i = 0; i < regions[k].nodes.size(); ++i) {
+      const Index v = regions[k].nodes[i];
+      if (problem.is_anchor[v] || regions[k].outermost[i] || !maps[k].placed[i]) continue;
+      result.positions.col(v) = maps[k].positions.col(static_cast<Eigen::Index>(i));
+    }
+  }
+  return result;
+}
+
+}  // namespace isotherm::network::detail

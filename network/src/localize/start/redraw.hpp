@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "localize/start/path_map.hpp"
+
+namespace isotherm::network::detail {
+
+/// The map with the surroundings of what contradicts it drawn anew: around the node with the most
+/// trusted pairs beyond the gate, then around the next one that is in no such region, all within
+/// some steps as a network of its own, whose outermost nodes say where it lies. Paths are short in
+/// a region: there a part comes to its place that in the large map turned the wrong way.
+Placement redraw(const RangeProblem& problem, const std::vector<bool>& trusted, Errors errors,
+                 double gate, const LocalizeOptions& options, const Placement& placement);
+
+}  // namespace isotherm::network::detail

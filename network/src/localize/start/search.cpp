@@ -1,0 +1,248 @@
+#include "localize/start/search.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "isotherm/spectral/edges/judge_edges.hpp"
+#include "localize/evidence/crowd.hpp"
+#include "localize/evidence/evidence.hpp"
+#include "localize/fold/open_folds.hpp"
+#include "localize/fold/recombine.hpp"
+#include "localize/refine/polish.hpp"
+#include "localize/refine/robust_refine.hpp"
+#include "localize/start/anchor_frame.hpp"
+#include "localize/start/path_map.hpp"
+#include "localize/start/redraw.hpp"
+
+namespace isotherm::network::detail {
+namespace {
+
+constexpr int kMostRounds = 10;  // of what is tried as long as it helps
+
+class Search {
+ public:
+  Search(const RangeProblem& problem, const Placement& anchors, const std::vector<bool>& trusted,
+         double gate, const LocalizeOptions& options)
+      : problem_(problem),
+        free_(problem),
+        anchors_(anchors),
+        trusted_(trusted),
+        gate_(gate),
+        options_(options),
+        best_(anchors) {
+    free_.is_anchor.assign(problem.nodes, false);
+  }
+
+  Placement run() {
+    constexpr double kLikely = 0.5;
+    if (options_.method != LocalizeMethod::robust) return started(trusted_, trusted_, Errors::any);
+    const auto likely = likely_pairs(problem_, kLikely, options_);
+    consider(started(likely, likely, Errors::any));
+    unfold_best();
+    if (!is_enough()) try_other_starts(likely);
+    for (int round = 0; round < kMostRounds && consider_redrawn(); ++round) unfold_best();
+    for (int round = 0; round < kMostRounds && consider(loosened(best_)); ++round) unfold_best();
+    return std::move(best_);
+  }
+
+ private:
+  Placement started(const std::vector<bool>& paths, const std::vector<bool>& pairs, Errors errors) {
+    errors_ = errors;
+    return in_frame(map_by_paths(free_, paths, pairs, errors, gate_, options_));
+  }
+
+  void try_other_starts(const std::vector<bool>& likely) {
+    has_false_ = std::find(likely.begin(), likely.end(), false) != likely.end();
+    if (has_false_) {
+      const auto supported = supported_pairs(problem_, likely);
+      consider(started(supported, supported, Errors::any));
+      consider(started(supported, supported, Errors::too_long));
+    }
+    consider(started(trusted_, trusted_, Errors::too_long));
+    unfold_best();
+    for (int round = 0; round < kMostRounds && try_without_contradicted(); ++round) unfold_best();
+    for (int round = 0; round < kMostRounds && consider(heated(best_)); ++round) unfold_best();
+  }
+
+  bool try_without_contradicted() {
+    const auto pairs = uncontradicted();
+    const auto paths = has_false_ ? supported_pairs(problem_, pairs) : pairs;
+    return consider(started(paths, pairs, best_errors_));
+  }
+
+  Placement in_frame(Placement map) const {
+    if (!problem_.anchored()) return map;
+    if (!align_to_anchors(problem_, anchors_, map)) return anchors_;
+    for (Index v = 0; v < problem_.nodes; ++v) {
+      if (!problem_.is_anchor[v]) continue;
+      map.placed[v] = true;
+      map.positions.col(v) = anchors_.positions.col(v);
+    }
+    return map;
+  }
+
+  Placement heated(Placement map) const {
+    unfold(problem_, trusted_, best_errors_, gate_, options_, map);
+    return map;
+  }
+
+  // From ranges whose deviation is a tenth of the typical one, halved again and again, down to what
+  // is stated.
+  Placement loosened(Placement map) const {
+    constexpr double kLoose = 0.1;
+    for (double factor = kLoose * problem_.typical_distance / problem_.typical_sigma; factor > 1.0;
+         factor *= 0.5) {
+      auto rough = problem_;
+      rough.typical_sigma *= factor;
+      for (auto& sigma : rough.sigmas) sigma *= factor;
+      for (auto& pair : rough.pairs) pair.sigma *= factor;
+      refine_robustly(rough, trusted_, gate_, options_, map);
+    }
+    return map;
+  }
+
+  std::vector<bool> uncontradicted() const {
+    auto pairs = trusted_;
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      const auto& pair = problem_.pairs[p];
+      if (is_placed(best_, pair) && squared_deviation(best_, pair) > 4.0 * gate_) pairs[p] = false;
+    }
+    return pairs;
+  }
+
+  // Whether a map that is settled makes the best one better.
+  bool consider(Placement map) {
+    refine_robustly(problem_, trusted_, gate_, options_, map);
+    polish(problem_, trusted_, gate_, options_, map);
+    return merge(std::move(map));
+  }
+
+  // Whether some region of it is better drawn anew.
+  bool consider_redrawn() {
+    bool any = false;
+    for (const auto errors : {Errors::any, Errors::too_long}) {
+      any = merge(redraw(problem_, trusted_, errors, gate_, options_, best_)) || any;
+    }
+    return any;
+  }
+
+  // The better one of both, with the parts that are better in the other.
+  bool merge(Placement map) {
+    constexpr double kGain = 2.0;  // of the worth, for which it is worth going on
+    double reached = worth(problem_, trusted_, map);
+    const double before = worth_;
+    if (reached > worth_) {
+      std::swap(map, best_);
+      worth_ = reached;
+      best_errors_ = errors_;
+    }
+    if (before > -std::numeric_limits<double>::infinity()) {
+      auto both = best_;
+      if (in_frame_of_best(map) && recombine(problem_, trusted_, gate_, options_, map, both)) {
+        reached = worth(problem_, trusted_, both);
+        if (reached > worth_) {
+          best_ = std::move(both);
+          worth_ = reached;
+        }
+      }
+    }
+    return worth_ > before + kGain;
+  }
+
+  // Without anchors every map has its own.
+  bool in_frame_of_best(Placement& map) const {
+    if (problem_.anchored()) return true;
+    auto shared = free_;
+    for (Index v = 0; v < problem_.nodes; ++v) {
+      shared.is_anchor[v] = map.placed[v] && best_.placed[v];
+    }
+    return align_to_anchors(shared, best_, map);
+  }
+
+  // The best map with what its folds gain.
+  void unfold_best() {
+    if (unfolded_ == worth_) return;
+    auto map = best_;
+    if (open_folds(problem_, trusted_, gate_, options_, map)) {
+      polish(problem_, trusted_, gate_, options_, map);
+      merge(std::move(map));
+    }
+    unfolded_ = worth_;
+  }
+
+  // Whether hardly a trusted pair is contradicted.
+  bool is_enough() const {
+    constexpr double kHardly = 0.005;
+    double pairs = 0.0;
+    double against = 0.0;
+    for (std::size_t p = 0; p < problem_.pairs.size(); ++p) {
+      const auto& pair = problem_.pairs[p];
+      if (!trusted_[p] || !is_placed(best_, pair)) continue;
+      pairs += 1.0;
+      if (squared_deviation(best_, pair) > gate_) against += 1.0;
+    }
+    return against <= kHardly * pairs;
+  }
+
+  const RangeProblem& problem_;
+  RangeProblem free_;  // of anchors
+  const Placement& anchors_;
+  const std::vector<bool>& trusted_;
+  double gate_;
+  const LocalizeOptions& options_;
+  Placement best_;
+  double worth_ = -std::numeric_limits<double>::infinity();
+  bool has_false_ = false;            // whether heat finds any false pair
+  double unfolded_ = worth_;          // when folds were opened last
+  Errors errors_ = Errors::any;       // of the last start
+  Errors best_errors_ = Errors::any;  // of that of the best map
+};
+
+}  // namespace
+
+std::vector<bool> likely_pairs(const RangeProblem& problem, double chance,
+                               const LocalizeOptions& options) {
+  std::vector<bool> likely(problem.pairs.size(), true);
+  // Heat says nothing about a network that is one neighbourhood.
+  if (!options.heat_pruning || options.method != LocalizeMethod::robust ||
+      problem.nodes <= options.patch_size) {
+    return likely;
+  }
+  constexpr std::uint64_t kSeed = 1;  // of the random pairs that ranges are compared with
+  const auto judged = spectral::judge_edges(
+      problem.pair_graph, {.chance = chance}, {},
+      {.threads = options.threads, .progress = options.progress, .seed = kSeed});
+  for (const auto& verdict : judged.verdicts) {
+    likely[verdict.edge] = verdict.verdict != spectral::Verdict::prune;
+  }
+  return likely;
+}
+
+std::vector<bool> supported_pairs(const RangeProblem& problem, const std::vector<bool>& pairs) {
+  std::vector<bool> supported(pairs.size(), false);
+  std::vector<Index> seen(problem.nodes, -1);  // as a neighbour of which node last
+  for (Index v = 0; v < problem.nodes; ++v) {
+    const auto around = problem.pair_graph.neighbours(v);
+    for (const auto& [vertex, edge] : around) {
+      if (pairs[edge]) seen[vertex] = v;
+    }
+    for (const auto& [vertex, edge] : around) {
+      if (!pairs[edge] || vertex < v) continue;
+      int common = 0;
+      for (const auto& [other, second] : problem.pair_graph.neighbours(vertex)) {
+        if (pairs[second] && seen[other] == v) ++common;
+      }
+      supported[edge] = common >= problem.dimension;
+    }
+  }
+  return supported;
+}
+
+Placement search_map(const RangeProblem& problem, const Placement& anchors,
+                     const std::vector<bool>& trusted, double gate,
+                     const LocalizeOptions& options) {
+  return Search(problem, anchors, trusted, gate, options).run();
+}
+
+}  // namespace isotherm::network::detail

@@ -1,0 +1,64 @@
+#include "prune/consensus/climb/learn.hpp"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "isotherm/base/random.hpp"
+#include "slam/loop_graph.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+using isotherm_test::random_loop_graph;
+
+template <class Pose>
+class LessonOf : public testing::Test {
+ protected:
+  static constexpr int kLoops = 60;
+
+  /// All loops accepted.
+  Explanation<Pose> assess(Assessment<Pose>& assessment, const CovarianceScale& scale,
+                           const ScaleShares& shares) const {
+    Explanation<Pose> now{.accepted = std::vector<bool>(kLoops, true), .scale = scale};
+    now.shares = shares;
+    now.weights.assign(kLoops, 1.0);
+    assessment.assess(now);
+    return now;
+  }
+
+  Random random_{5};
+  PoseGraph<Pose> graph_ = random_loop_graph<Pose>(random_, 120, kLoops, 1.0).graph;
+  Objective<Pose> objective_{graph_, edge_roles(graph_), 20};
+};
+
+using Poses = testing::Types<Pose2, Pose3>;
+TYPED_TEST_SUITE(LessonOf, Poses);
+
+// Expectation maximisation alone stays where all loops are called three times worse than most.
+TYPED_TEST(LessonOf, CallsMostWhatMostAre) {
+  using Pose = TypeParam;
+  Assessment<Pose> assessment(this->objective_);
+  const auto now = this->assess(assessment, {1.0, 1.0 / 3.0}, {{0.0, 60.0, 0.0, 0.0}});
+  const auto lesson = learn(assessment, now, true);
+  EXPECT_NEAR(lesson.scale.loops, 1.0, 0.3);
+  EXPECT_GT(lesson.shares.loops[0], 0.9 * (lesson.shares.loops[0] + lesson.shares.loops[1]));
+  EXPECT_GT(lesson.gain, 0.0);
+}
+
+// As measured, with the map and odometry where they go then.
+TYPED_TEST(LessonOf, WiderLoopsGainNoMoreThanTheBound) {
+  using Pose = TypeParam;
+  constexpr double kFactor = 9.0;
+  for (const double odometry : {0.01, 1.0, 100.0}) {
+    Assessment<Pose> assessment(this->objective_);
+    const ScaleShares most{{60.0, 0.0, 0.0, 0.0}};
+    const auto now = this->assess(assessment, {odometry, 1.0}, most);
+    const double bound = most_gain_of_wider(kFactor, assessment, now);
+    const auto wider = this->assess(assessment, {odometry, kFactor}, most);
+    EXPECT_LT(wider.evidence - now.evidence, bound + 1.0) << odometry;
+  }
+}
+
+}  // namespace
+}  // namespace isotherm::slam::detail
