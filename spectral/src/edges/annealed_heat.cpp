@@ -153,12 +153,15 @@ class Rounds {
     return judgement;
   }
 
-  /// Weighs, too, how far from each other places put the ends, if the graph is small enough. Places
-  /// are those of the edges that the answer so far believes, in two and in three dimensions; of all
-  /// answers that of the highest evidence is taken.
+  /// Weighs, too, how far from each other places put the ends, if the graph is small enough and the
+  /// answer leaves something to tell: more than half an edge expected to be wrong. Places are those
+  /// of the edges that the answer so far believes, in two and in three dimensions; of all answers
+  /// that of the highest evidence is taken.
   Judgement weigh_places(Judgement heat, Judgement answer, std::span<const double> lengths) const {
+    constexpr double kHalfAnEdge = 0.5;
+    if (expected_errors(answer.groups.truth) <= kHalfAnEdge) return answer;
     heat.groups = answer.groups;
-    const auto trust = vouching(answer.groups.truth);
+    const auto trust = trust_of(answer.groups.truth, kEven);
     const FirstGuess guess{trust, answer.groups.false_count};
     for (const int dimension : {2, 3}) {
       auto space = space_features(graph_, lengths, dimension, guess, thin_out(pairs_),
@@ -189,6 +192,13 @@ class Rounds {
     double expected = 0.0;
     for (const double p : truth) expected += 1.0 - p;
     false_count = std::max(false_count, expected);
+  }
+
+  /// How many edges are expected to be other than what is more likely.
+  static double expected_errors(std::span<const double> truth) {
+    double errors = 0.0;
+    for (const double p : truth) errors += std::min(p, 1.0 - p);
+    return errors;
   }
 
   /// Whether no more than one false edge in a hundred, or half an edge, changed its place.

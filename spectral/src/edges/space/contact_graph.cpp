@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace isotherm::spectral::detail {
 namespace {
@@ -43,10 +44,9 @@ class Sum {
     return (places_.col(pair.from) - places_.col(pair.to)).squaredNorm();
   }
 
-  double distance(VertexPair pair) const { return std::sqrt(squared_distance(pair) + kSame); }
-
-  void add(VertexPair pair, double apart, const Term& term) {
-    multiply(term.factor);
+  /// @param most what the factor is divided by
+  void add(VertexPair pair, double apart, const Term& term, double most) {
+    multiply(term.factor / most);
     const Eigen::Matrix<double, Dimension, 1> pull =
         (term.slope / apart) * (places_.col(pair.from) - places_.col(pair.to));
     gradient_.col(pair.from) -= pull;
@@ -95,12 +95,17 @@ ContactGraph::ContactGraph(const WeightedGraph& graph, std::span<const double> l
 template <int Dimension>
 std::vector<VertexPair> ContactGraph::open_pairs(const Places<Dimension>& places,
                                                  double distance) const {
+  // Along the first axis, so that only what is near on it is looked at.
+  std::vector<Index> order(static_cast<std::size_t>(vertex_count_));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::ranges::sort(order, {}, [&](Index v) { return places(0, v); });
   std::vector<VertexPair> pairs;
-  for (Index from = 0; from < vertex_count_; ++from) {
-    const char* joined = joined_.data() + from * vertex_count_;
-    for (Index to = 0; to < from; ++to) {
-      const double squared = (places.col(from) - places.col(to)).squaredNorm();
-      if (squared < distance * distance && joined[to] == 0) pairs.push_back({from, to});
+  for (auto first = order.begin(); first != order.end(); ++first) {
+    const char* joined = joined_.data() + static_cast<std::size_t>(*first) * vertex_count_;
+    const double end = places(0, *first) + distance;
+    for (auto other = first + 1; other != order.end() && places(0, *other) < end; ++other) {
+      const double squared = (places.col(*first) - places.col(*other)).squaredNorm();
+      if (squared < distance * distance && joined[*other] == 0) pairs.push_back({*first, *other});
     }
   }
   return pairs;
@@ -109,19 +114,26 @@ std::vector<VertexPair> ContactGraph::open_pairs(const Places<Dimension>& places
 template <int Dimension>
 double ContactGraph::energy(const Places<Dimension>& places, const ContactModel& model,
                             std::span<const VertexPair> close, Places<Dimension>& gradient) const {
-  gradient.setZero(Dimension, places.cols());
+  const double loose = 1.0 / (model.spread * model.spread);
+  gradient = loose * places;
   Sum<Dimension> sum(places, gradient);
+  const double certain = model.certain_up_to(), silent = model.silent_from();
+  // What an edge and a pair without one count for where they say next to nothing.
+  const double joined = chance_of_pair(true, chance_of_contact(certain, 1.0, model), model);
+  const double open = chance_of_pair(false, chance_of_contact(silent, 1.0, model), model);
   for (const auto& [ends, reach] : edges_) {
-    const double distance = sum.distance(ends);
-    sum.add(ends, distance, pair_term(true, Contact(distance, reach, model.width), model));
+    const double squared = sum.squared_distance(ends), inside = certain * reach;
+    if (squared < inside * inside) continue;
+    const double distance = std::sqrt(squared + kSame);
+    sum.add(ends, distance, pair_term(true, Contact(distance, reach, model.width), model), joined);
   }
-  const double silent = model.silent_from() * model.silent_from();
   for (const auto& pair : close) {
-    if (sum.squared_distance(pair) >= silent) continue;
-    const double distance = sum.distance(pair);
-    sum.add(pair, distance, pair_term(false, Contact(distance, 1.0, model.width), model));
+    const double squared = sum.squared_distance(pair);
+    if (squared >= silent * silent) continue;
+    const double distance = std::sqrt(squared + kSame);
+    sum.add(pair, distance, pair_term(false, Contact(distance, 1.0, model.width), model), open);
   }
-  return sum.energy();
+  return sum.energy() + 0.5 * loose * places.squaredNorm();
 }
 
 template std::vector<VertexPair> ContactGraph::open_pairs<2>(const Places<2>&, double) const;

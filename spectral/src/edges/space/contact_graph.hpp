@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -19,13 +21,21 @@ using Places = Eigen::Matrix<double, Dimension, Eigen::Dynamic>;
 ///   rho(d) = (1 - 0.01) / (1 + exp((d - 1) / width)),
 ///
 /// so that 1 is how far edges reach. What is near is joined, and what is joined is near or one of
-/// the false edges, which join any two alike.
+/// the false edges, which join any two alike. Places are normal around 0, which keeps what no edge
+/// holds from drifting away.
 struct ContactModel {
   double width = 0.03;
   double astray = 1e-3;  ///< probability that a false edge joins two given vertices
+  double spread = std::numeric_limits<double>::infinity();  ///< deviation of a coordinate
 
-  /// From here on a pair without an edge says next to nothing.
-  double silent_from() const { return 1.0 + 5.0 * width; }
+  /// From here on a pair without an edge says next to nothing, and counts as no more than there.
+  double silent_from() const { return 1.0 + kWidths * width; }
+
+  /// Up to here an edge of reach 1 says next to nothing, and counts as no more than there.
+  double certain_up_to() const { return std::max(0.0, 1.0 - kWidths * width); }
+
+ private:
+  static constexpr double kWidths = 5.0;  // log odds, of which 1 in 150 is left
 };
 
 /// A graph whose edges are contacts, and the other pairs of its vertices none. A chain of k edges
@@ -41,8 +51,8 @@ class ContactGraph {
   template <int Dimension>
   std::vector<VertexPair> open_pairs(const Places<Dimension>& places, double distance) const;
 
-  /// -log of the probability of all edges and of the pairs without one, given the places, and its
-  /// gradient. O(m + q).
+  /// -log of the probability of all edges, of the pairs without one and of the places, but for a
+  /// constant, and its gradient. O(m + q).
   /// @param close the q pairs without an edge that may be nearer than model.silent_from()
   template <int Dimension>
   double energy(const Places<Dimension>& places, const ContactModel& model,

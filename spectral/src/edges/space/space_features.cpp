@@ -32,14 +32,15 @@ struct Occupied {
 };
 
 /// The more vertices, the more each place is held by others, and the less one run tells than many.
+/// Two are needed to see two ends that a vertex may hang on.
 int affordable_runs(Index vertex_count) {
   constexpr double kBudget = 2e8;  // pairs that are looked at
-  constexpr double kMostRuns = 8.0;
+  constexpr double kFewestRuns = 2.0, kMostRuns = 4.0;
   constexpr Index kMostVertices = 1400;
   if (vertex_count > kMostVertices) return 0;
   const auto count = static_cast<double>(vertex_count);
   const double runs = kBudget / (0.5 * count * count * sampling_steps());
-  return static_cast<int>(std::clamp(runs, 1.0, kMostRuns));
+  return static_cast<int>(std::clamp(runs, kFewestRuns, kMostRuns));
 }
 
 std::vector<AskedPair> all_asked(const Occupied& occupied, std::span<const double> lengths,
@@ -55,22 +56,60 @@ std::vector<AskedPair> all_asked(const Occupied& occupied, std::span<const doubl
   return asked;
 }
 
+/// Vertices all of whose edges are doubted.
+std::vector<Index> doubted_vertices(const WeightedGraph& graph, std::span<const double> trust) {
+  std::vector<Index> doubted;
+  for (Index v = 0; v < graph.vertex_count(); ++v) {
+    const auto trusted = [&](const auto& near) { return trust[near.edge] > 0.0; };
+    if (std::ranges::none_of(graph.neighbours(v), trusted)) doubted.push_back(v);
+  }
+  return doubted;
+}
+
+/// Places to start runs from, which take turns. A vertex all of whose edges are doubted hangs on
+/// one of them, in each on another: starts are to differ in what is not known (Gelman and Rubin
+/// 1992).
+template <int Dimension>
+std::vector<Places<Dimension>> run_starts(const WeightedGraph& graph,
+                                          std::span<const double> lengths,
+                                          std::span<const double> trust) {
+  // Points spread evenly over a ball are that far from its middle on average.
+  constexpr double kStep = Dimension / (Dimension + 1.0);
+  const auto doubted = doubted_vertices(graph, trust);
+  const std::size_t count = doubted.empty() ? 1 : affordable_runs(graph.vertex_count());
+  std::vector<Places<Dimension>> starts;
+  for (std::size_t k = 0; k < count; ++k) {
+    std::vector<double> held(trust.begin(), trust.end());
+    for (const Index v : doubted) {
+      const auto near = graph.neighbours(v);
+      held[near[k % near.size()].edge] = 1.0;
+    }
+    starts.push_back(kStep * classical_scaling(steps_between(graph, lengths, held), Dimension));
+  }
+  return starts;
+}
+
+/// That of the coordinates, but no less than an edge reaches.
+template <int Dimension>
+double spread_of(const Places<Dimension>& places) {
+  return std::max(1.0, std::sqrt(places.squaredNorm() / static_cast<double>(places.size())));
+}
+
 template <int Dimension>
 LeftOut sample_often(const Occupied& occupied, std::span<const double> lengths,
                      const FirstGuess& guess, std::span<const AskedPair> asked,
                      const SpaceOptions& options) {
-  // Points spread evenly over a ball are that far from its middle on average.
-  constexpr double kStep = Dimension / (Dimension + 1.0);
   const Index count = occupied.graph.vertex_count();
   const ContactGraph contacts(occupied.graph, lengths);
   const double pair_count = 0.5 * static_cast<double>(count) * static_cast<double>(count - 1);
-  const ContactModel model{kWidth, std::max(1.0, guess.false_count) / pair_count};
-  const Places<Dimension> start =
-      kStep * classical_scaling(steps_between(occupied.graph, lengths, guess.trust), Dimension);
+  const auto starts = run_starts<Dimension>(occupied.graph, lengths, guess.trust);
   std::vector<LeftOut> runs(affordable_runs(count));
   parallel_for(static_cast<std::int64_t>(runs.size()), options.threads, options.progress, "places",
                [&](std::int64_t k) {
+                 const auto& start = starts[k % starts.size()];
                  const auto seed = options.seed + static_cast<std::uint64_t>(k);
+                 ContactModel model{kWidth, std::max(1.0, guess.false_count) / pair_count};
+                 model.spread = spread_of<Dimension>(start);
                  runs[k] = sample_places<Dimension>(contacts, model, start, asked, seed);
                });
   LeftOut all = std::move(runs.front());

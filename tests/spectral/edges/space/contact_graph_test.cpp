@@ -1,5 +1,6 @@
 #include "edges/space/contact_graph.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -13,18 +14,23 @@ using namespace isotherm_test;
 
 const ContactModel kModel{0.1, 1e-3};
 
-/// Written down once more, over all pairs.
+/// Written down once more, over all pairs, where an edge counts as no shorter than 0.5, and a pair
+/// without one as no farther than 1.5: there they count as nothing.
 double energy_by_hand(const WeightedGraph& graph, const Places<3>& places) {
+  const auto rho = [](double distance) {
+    return 0.99 / (1.0 + std::exp((distance - 1.0) / kModel.width));
+  };
+  const double most = rho(0.5) + kModel.astray, least = rho(1.5);
   double energy = 0.0;
   for (Index i = 0; i < graph.vertex_count(); ++i) {
     for (Index j = i + 1; j < graph.vertex_count(); ++j) {
       const double distance = (places.col(i) - places.col(j)).norm();
-      const double near = 0.99 / (1.0 + std::exp((distance - 1.0) / kModel.width));
       bool joined = false;
       for (const auto& edge : graph.edges()) {
         joined = joined || (edge.from == i && edge.to == j);
       }
-      energy -= std::log(joined ? near + kModel.astray : 1.0 - near);
+      energy -= joined ? std::log((rho(std::max(distance, 0.5)) + kModel.astray) / most)
+                       : std::log((1.0 - rho(std::min(distance, 1.5))) / (1.0 - least));
     }
   }
   return energy;
@@ -43,8 +49,10 @@ TEST(ContactGraph, EnergyIsThatOfAllPairs) {
   const auto all = fixture.model.open_pairs(fixture.places, 100.0);
   EXPECT_EQ(all.size() + fixture.graph.edges().size(), 40U * 39U / 2U);
   const double energy = fixture.model.energy(fixture.places, kModel, all, gradient);
-  // What is silent counts as nothing.
-  EXPECT_NEAR(energy, energy_by_hand(fixture.graph, fixture.places), 0.5);
+  EXPECT_NEAR(energy, energy_by_hand(fixture.graph, fixture.places), 1e-3);
+  const ContactModel held{kModel.width, kModel.astray, 2.0};
+  EXPECT_NEAR(fixture.model.energy(fixture.places, held, all, gradient),
+              energy + fixture.places.squaredNorm() / 8.0, 1e-9);
   const auto close = fixture.model.open_pairs(fixture.places, kModel.silent_from());
   EXPECT_LT(close.size(), all.size());
   EXPECT_NEAR(fixture.model.energy(fixture.places, kModel, close, gradient), energy, 1e-9);
@@ -54,7 +62,7 @@ TEST(ContactGraph, GradientIsThatOfTheEnergy) {
   Fixture fixture;
   constexpr double kStep = 1e-6;
   // All pairs are heard, so that none begins to be on the way.
-  const ContactModel wide{1.0, 1e-3};
+  const ContactModel wide{1.0, 1e-3, 3.0};
   const auto pairs = fixture.model.open_pairs(fixture.places, 100.0);
   Places<3> gradient, other;
   fixture.model.energy(fixture.places, wide, pairs, gradient);
