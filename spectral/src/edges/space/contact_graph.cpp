@@ -7,30 +7,13 @@
 namespace isotherm::spectral::detail {
 namespace {
 
-constexpr double kMissing = 0.01;  // of the pairs that are near, so many have no edge
-constexpr double kSame = 1e-6;     // keeps directions between vertices in one place finite
+constexpr double kNear = 0.99;  // of the pairs that are near, so many have an edge
+constexpr double kSame = 1e-6;  // keeps directions between vertices in one place finite
 
-/// rho(d), and its derivative.
-struct Contact {
-  double chance, slope;
-
-  Contact(double distance, double reach, double width) {
-    constexpr double kFlat = 60.0;
-    const double beyond = std::clamp((distance / reach - 1.0) / width, -kFlat, kFlat);
-    const double inside = 1.0 / (1.0 + std::exp(beyond));
-    chance = (1.0 - kMissing) * inside;
-    slope = -chance * (1.0 - inside) / (width * reach);
-  }
-};
-
-/// A factor of the probability, and the derivative of its logarithm by the distance.
-struct Term {
-  double factor, slope;
-};
-
-Term pair_term(bool joined, const Contact& contact, const ContactModel& model) {
-  const double chance = chance_of_pair(joined, contact.chance, model);
-  return {chance, (joined ? contact.slope : -contact.slope) / chance};
+/// exp((d / reach - 1) / width), as far as numbers go.
+double excess(double distance, double per_reach, double per_width) {
+  constexpr double kFlat = 60.0;
+  return std::exp(std::clamp((distance * per_reach - 1.0) * per_width, -kFlat, kFlat));
 }
 
 /// The energy of all terms, each of one distance.
@@ -44,11 +27,13 @@ class Sum {
     return (places_.col(pair.from) - places_.col(pair.to)).squaredNorm();
   }
 
-  /// @param most what the factor is divided by
-  void add(VertexPair pair, double apart, const Term& term, double most) {
-    multiply(term.factor / most);
+  /// A factor seen / (1 + excess) of the probability, in one division.
+  /// @param slope the derivative of log(factor) by the distance, but for the factor's denominators
+  void add(VertexPair pair, double apart, double excess, double seen, double slope) {
+    const double share = 1.0 / ((1.0 + excess) * seen * apart);
+    multiply(seen * seen * apart * share);
     const Eigen::Matrix<double, Dimension, 1> pull =
-        (term.slope / apart) * (places_.col(pair.from) - places_.col(pair.to));
+        (slope * share) * (places_.col(pair.from) - places_.col(pair.to));
     gradient_.col(pair.from) -= pull;
     gradient_.col(pair.to) += pull;
   }
@@ -74,7 +59,7 @@ class Sum {
 }  // namespace
 
 double chance_of_contact(double distance, double reach, const ContactModel& model) {
-  return Contact(distance, reach, model.width).chance;
+  return kNear / (1.0 + excess(distance, 1.0 / reach, 1.0 / model.width));
 }
 
 double chance_of_pair(bool joined, double near, const ContactModel& model) {
@@ -118,22 +103,30 @@ double ContactGraph::energy(const Places<Dimension>& places, const ContactModel&
   gradient = loose * places;
   Sum<Dimension> sum(places, gradient);
   const double certain = model.certain_up_to(), silent = model.silent_from();
-  // What an edge and a pair without one count for where they say next to nothing.
-  const double joined = chance_of_pair(true, chance_of_contact(certain, 1.0, model), model);
-  const double open = chance_of_pair(false, chance_of_contact(silent, 1.0, model), model);
+  double heard_edges = 0.0, heard_pairs = 0.0;
+  const double per_width = 1.0 / model.width;
   for (const auto& [ends, reach] : edges_) {
     const double squared = sum.squared_distance(ends), inside = certain * reach;
     if (squared < inside * inside) continue;
-    const double distance = std::sqrt(squared + kSame);
-    sum.add(ends, distance, pair_term(true, Contact(distance, reach, model.width), model), joined);
+    const double apart = std::sqrt(squared + kSame), per_reach = 1.0 / reach;
+    const double beyond = excess(apart, per_reach, per_width);
+    const double seen = kNear + model.astray * (1.0 + beyond);
+    sum.add(ends, apart, beyond, seen, -kNear * beyond * per_width * per_reach);
+    ++heard_edges;
   }
   for (const auto& pair : close) {
     const double squared = sum.squared_distance(pair);
     if (squared >= silent * silent) continue;
-    const double distance = std::sqrt(squared + kSame);
-    sum.add(pair, distance, pair_term(false, Contact(distance, 1.0, model.width), model), open);
+    const double apart = std::sqrt(squared + kSame);
+    const double beyond = excess(apart, 1.0, per_width);
+    sum.add(pair, apart, beyond, 1.0 - kNear + beyond, kNear * beyond * per_width);
+    ++heard_pairs;
   }
-  return sum.energy() + 0.5 * loose * places.squaredNorm();
+  // What is not heard counts for as much as where it begins to be.
+  const double joined = chance_of_pair(true, chance_of_contact(certain, 1.0, model), model);
+  const double open = chance_of_pair(false, chance_of_contact(silent, 1.0, model), model);
+  return sum.energy() + heard_edges * std::log(joined) + heard_pairs * std::log(open) +
+         0.5 * loose * places.squaredNorm();
 }
 
 template std::vector<VertexPair> ContactGraph::open_pairs<2>(const Places<2>&, double) const;

@@ -7,8 +7,8 @@
 namespace isotherm::spectral::detail {
 namespace {
 
-constexpr int kLevels = 8;    // of the width
-constexpr int kPerLevel = 8;  // trajectories
+constexpr int kLevels = 8;                     // of the width
+constexpr int kPerLevel = 8;                   // trajectories
 constexpr int kUncounted = 33, kCounted = 67;  // trajectories at the last level
 constexpr double kWidest = 0.3;
 

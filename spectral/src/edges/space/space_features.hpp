@@ -25,11 +25,12 @@ struct SpaceOptions {
 /// vertex has a place in space and near ones are joined (contact_graph.hpp).
 ///
 /// Places are sampled several times (place_sampler.hpp), from those that steps along trusted edges
-/// suggest (classical_scaling.hpp).
+/// suggest (classical_scaling.hpp). A vertex all of whose edges are doubted begins at another of
+/// its neighbours in each run, as none is known to be its.
 /// @param dimension 2 or 3
 /// @param lengths how many original edges each edge stands for
-/// @return nothing for graphs of fewer than ten vertices with an edge, or of some eight hundred and
-///   more, where it would take too long
+/// @return log odds, of edges and of pairs in their order; nothing for graphs of fewer than ten
+///   vertices with an edge, or of more than 1,400, where it would take too long
 /// @throws Cancelled
 std::optional<Measured> space_features(const WeightedGraph& graph, std::span<const double> lengths,
                                        int dimension, const FirstGuess& guess,

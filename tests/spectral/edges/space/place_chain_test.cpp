@@ -38,8 +38,8 @@ void expect_means_of_triple() {
   // About four deviations of the chain's means.
   EXPECT_NEAR(edge / kMoves, triple.mean([](const auto& apart) { return apart.first; }), 0.02);
   EXPECT_NEAR(open / kMoves, triple.mean([](const auto& apart) { return apart.open; }), 0.02);
-  EXPECT_NEAR(near / kMoves,
-              triple.mean([&](const auto& apart) { return triple.rho(apart.open); }), 0.01);
+  EXPECT_NEAR(near / kMoves, triple.mean([&](const auto& apart) { return triple.rho(apart.open); }),
+              0.01);
   EXPECT_NEAR(stretched / kMoves,
               triple.mean([](const auto& apart) { return apart.second > 1.0 ? 1.0 : 0.0; }), 0.02);
 }
