@@ -1,6 +1,7 @@
 #include "edges/space/space_features.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -40,6 +41,72 @@ TEST(SpaceFeatures, TellNearFromFar) {
   const auto again = space_features(graph, ones, 3, {trust, 30.0}, pairs, {.threads = 2});
   EXPECT_EQ(again->edges, found->edges);
   EXPECT_EQ(again->pairs, found->pairs);
+}
+
+/// Pearson's.
+double correlation(const std::vector<double>& one, const std::vector<double>& other) {
+  const Eigen::Map<const Eigen::ArrayXd> x(one.data(), static_cast<Eigen::Index>(one.size()));
+  const Eigen::Map<const Eigen::ArrayXd> y(other.data(), static_cast<Eigen::Index>(other.size()));
+  const Eigen::ArrayXd dx = x - x.mean(), dy = y - y.mean();
+  return (dx * dy).sum() / std::sqrt(dx.square().sum() * dy.square().sum());
+}
+
+TEST(SpaceFeatures, HardlyDependOnTheSeedAndTheOrderOfVertices) {
+  Random random(12);
+  const auto graph = contacts(points_in_ball(120, 3, random), 0.45, 30, random);
+  const auto ones = equal_worth(graph);
+  auto trust = ones;
+  std::fill(trust.end() - 30, trust.end(), 0.0);
+  std::vector<WeightedEdge> edges;
+  for (const auto& [from, to, weight] : graph.edges()) edges.push_back({119 - to, 119 - from, 1.0});
+  const WeightedGraph turned(120, edges);
+  const auto found = space_features(graph, ones, 3, {trust, 30.0}, {}, {.seed = 1});
+  const auto other = space_features(graph, ones, 3, {trust, 30.0}, {}, {.seed = 100});
+  const auto back = space_features(turned, ones, 3, {trust, 30.0}, {}, {.seed = 1});
+  ASSERT_TRUE(found && other && back);
+  EXPECT_GT(correlation(found->edges, other->edges), 0.95);
+  EXPECT_GT(correlation(found->edges, back->edges), 0.95);
+}
+
+TEST(SpaceFeatures, DoubtAllEdgesOfAVertexThatLeadApart) {
+  // Where the vertex begins would vouch for the edge there, if it began there in each run.
+  std::vector<WeightedEdge> edges;
+  for (Index y = 0; y < 3; ++y) {
+    for (Index x = 0; x < 30; ++x) {
+      const Index v = y * 30 + x;
+      if (x + 1 < 30) edges.push_back({v, v + 1, 1.0});
+      if (y + 1 < 3) edges.push_back({v, v + 30, 1.0});
+      if (x + 1 < 30 && y + 1 < 3) edges.push_back({v, v + 31, 1.0});
+      if (x > 0 && y + 1 < 3) edges.push_back({v, v + 29, 1.0});
+    }
+  }
+  for (const Index v : {0, 45, 29}) edges.push_back({90, v, 1.0});
+  const WeightedGraph graph(91, edges);
+  const auto ones = equal_worth(graph);
+  auto trust = ones;
+  std::fill(trust.end() - 3, trust.end(), 0.0);
+  const auto found = space_features(graph, ones, 2, {trust, 3.0}, {}, {});
+  ASSERT_TRUE(found);
+  for (std::size_t k = found->edges.size() - 3; k < found->edges.size(); ++k) {
+    EXPECT_GT(found->edges[k], 3.0);
+  }
+}
+
+TEST(SpaceFeatures, TakePartsAndRepeatedEdges) {
+  const auto parts = disjoint_union(ring_graph(12), complete_graph(6));
+  std::vector<WeightedEdge> edges(parts.edges().begin(), parts.edges().end());
+  edges.insert(edges.end(), parts.edges().begin(), parts.edges().end());
+  const WeightedGraph twice(parts.vertex_count(), edges);
+  const auto ones = equal_worth(twice);
+  const std::vector<VertexPair> pairs = {{0, 6}, {0, 17}};
+  for (const auto& trust : {ones, equal_worth(twice, 0.0)}) {
+    for (const int dimension : {2, 3}) {
+      const auto found = space_features(twice, ones, dimension, {trust, 0.0}, pairs, {});
+      ASSERT_TRUE(found);
+      for (const double odds : found->edges) EXPECT_LT(std::abs(odds), 14.0);
+      for (const double odds : found->pairs) EXPECT_LT(std::abs(odds), 14.0);
+    }
+  }
 }
 
 TEST(SpaceFeatures, AreNotThoseOfFewOrManyVertices) {
