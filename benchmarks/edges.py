@@ -8,8 +8,8 @@ at its default and at its own best threshold; and how many edges of clean versio
 Every false edge counts, also between vertices that happen to be near. Method rank is told the
 positions, where the table of methods names it. Detours are counted up to MOST steps, betweenness
 over PIVOTS sources. Seeds are 1, 2 and 3 unless others are named. --small prints, of the default
-method on graphs of the same kinds with 46 to 1,000 vertices, precision, recall, area under the curve,
-edges pruned of clean versions and seconds of wall-clock time. Needs numpy, scipy and networkx.
+method on graphs of the same kinds with 46 to 1,000 vertices, precision, recall, area under the
+curve, edges pruned of clean versions and seconds of wall-clock time. Needs numpy, scipy and networkx.
 """
 
 import collections
