@@ -9,7 +9,8 @@ Every false edge counts, also between vertices that happen to be near. Method ra
 positions, where the table of methods names it. Detours are counted up to MOST steps, betweenness
 over PIVOTS sources. Seeds are 1, 2 and 3 unless others are named. --small prints, of the default
 method on graphs of the same kinds with 46 to 1,000 vertices, precision, recall, area under the
-curve, edges pruned of clean versions and seconds of wall-clock time. Needs numpy, scipy and networkx.
+curve, edges pruned of clean versions and seconds of wall-clock time. Needs numpy, scipy and
+networkx.
 """
 
 import collections
