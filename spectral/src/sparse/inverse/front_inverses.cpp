@@ -1,6 +1,7 @@
 #include "sparse/inverse/front_inverses.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "sparse/dense_kernels.hpp"
 
@@ -44,19 +45,40 @@ void invert_large_front(const EliminatedFront<Scalar>& eliminated, View inverse,
   inverse.topRightCorner(width, outside) = below.transpose();
 }
 
+Eigen::Index entries(const FrontTree& tree, Index front) {
+  const Eigen::Index order = Eigen::Index{tree.size(front)} * tree.block_size();
+  return order * order;
+}
+
+// On any way to a root, of which all fronts are held at once.
+Eigen::Index most_entries(const FrontTree& tree) {
+  std::vector<Eigen::Index> on_the_way(static_cast<std::size_t>(tree.front_count()));
+  Eigen::Index most = 0;
+  for (Index front = tree.front_count() - 1; front >= 0; --front) {
+    const Index parent = tree.parent(front);
+    on_the_way[front] = entries(tree, front) + (parent < 0 ? 0 : on_the_way[parent]);
+    most = std::max(most, on_the_way[front]);
+  }
+  return most;
+}
+
 }  // namespace
+
+// Room for all at once, of which the system gives what is written: it is not moved as it grows.
+template <class Scalar>
+FrontInverses<Scalar>::FrontInverses(const FrontTree& tree)
+    : tree_(tree), stack_(most_entries(tree)) {}
 
 template <class Scalar>
 typename FrontInverses<Scalar>::View FrontInverses<Scalar>::enter(
     Index front, const EliminatedFront<Scalar>& eliminated) {
   while (!ancestors_.empty() && ancestors_.back().front != tree_.parent(front)) {
-    stack_.resize(ancestors_.back().begin);
+    top_ = ancestors_.back().begin;
     ancestors_.pop_back();
   }
   const Eigen::Index order = Eigen::Index{tree_.size(front)} * tree_.block_size();
   const Eigen::Index width = Eigen::Index{tree_.width(front)} * tree_.block_size();
-  const std::size_t begin = stack_.size();
-  stack_.resize(begin + static_cast<std::size_t>(order * order));
+  const Eigen::Index begin = std::exchange(top_, top_ + entries(tree_, front));
   const View inverse(stack_.data() + begin, order, order, Eigen::OuterStride<>(order));
   if (order > width) {
     gather(front, View(stack_.data() + begin + width * (order + 1), order - width, order - width,

@@ -49,7 +49,7 @@ class FrontInverses {
   using View = Eigen::Map<Matrix, 0, Eigen::OuterStride<>>;
 
   /// `tree` must outlive this object.
-  explicit FrontInverses(const FrontTree& tree) : tree_(tree) {}
+  explicit FrontInverses(const FrontTree& tree);
 
   /// Both triangles of Z on a front, until the next call. Fronts must come in descending
   /// order, after their parents.
@@ -58,13 +58,14 @@ class FrontInverses {
  private:
   struct Ancestor {
     Index front;
-    std::size_t begin;  // of its inverse in stack_
+    Eigen::Index begin;  // of its inverse in stack_
   };
 
   void gather(Index front, View corner);
 
   const FrontTree& tree_;
-  std::vector<Scalar> stack_;  // inverses of the ancestors' fronts
+  Eigen::Matrix<Scalar, Eigen::Dynamic, 1> stack_;  // inverses of the ancestors' fronts
+  Eigen::Index top_ = 0;                            // of what is in use
   std::vector<Ancestor> ancestors_;
   std::vector<Eigen::Index> places_;
 };
