@@ -163,10 +163,8 @@ class Rounds {
     heat.groups = answer.groups;
     const auto trust = trust_of(answer.groups.truth, kEven);
     const FirstGuess guess{trust, answer.groups.false_count};
-    for (const int dimension : {2, 3}) {
-      auto space = space_features(graph_, lengths, dimension, guess, thin_out(pairs_),
-                                  {options_.seed, options_.threads, options_.progress});
-      if (!space) break;
+    for (auto& space : space_features(graph_, lengths, guess, thin_out(pairs_),
+                                      {options_.seed, options_.threads, options_.progress})) {
       auto other = weigh(heat, {{}, std::move(space)});
       if (other.log_evidence > answer.log_evidence) answer = std::move(other);
     }

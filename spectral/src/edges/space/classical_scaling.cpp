@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <queue>
 #include <utility>
 #include <vector>
 
@@ -16,22 +14,24 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-/// Dijkstra 1959.
+/// Vertex by vertex in the order of their steps, from a list for each number of them (Dial 1969).
 Eigen::VectorXd steps_from(const WeightedGraph& graph, std::span<const double> lengths,
                            std::span<const double> trust, Index start) {
   Eigen::VectorXd steps = Eigen::VectorXd::Constant(graph.vertex_count(), kFar);
-  using Reached = std::pair<double, Index>;
-  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> rim;
-  rim.emplace(steps[start] = 0.0, start);
-  while (!rim.empty()) {
-    const auto [distance, vertex] = rim.top();
-    rim.pop();
-    if (distance > steps[vertex]) continue;
-    for (const auto& [other, edge] : graph.neighbours(vertex)) {
-      const double next = distance + lengths[edge];
-      if (trust[edge] == 0.0 || next >= steps[other]) continue;
-      steps[other] = next;
-      rim.emplace(next, other);
+  steps[start] = 0.0;
+  std::vector<std::vector<Index>> rims = {{start}};
+  for (std::size_t reached = 0; reached < rims.size(); ++reached) {
+    const auto rim = std::move(rims[reached]);
+    for (const Index vertex : rim) {
+      if (static_cast<double>(reached) > steps[vertex]) continue;
+      for (const auto& [other, edge] : graph.neighbours(vertex)) {
+        const double next = steps[vertex] + lengths[edge];
+        if (trust[edge] == 0.0 || next >= steps[other]) continue;
+        steps[other] = next;
+        const auto place = static_cast<std::size_t>(next);
+        if (place >= rims.size()) rims.resize(place + 1);
+        rims[place].push_back(other);
+      }
     }
   }
   return steps;

@@ -12,6 +12,7 @@ namespace isotherm::spectral::detail {
 namespace {
 
 constexpr double kWidth = 0.03;  // narrower, and samples hardly move
+constexpr Eigen::Index kMostDimensions = 3;
 
 /// The vertices with an edge, by themselves.
 struct Occupied {
@@ -66,25 +67,21 @@ std::vector<Index> doubted_vertices(const WeightedGraph& graph, std::span<const 
   return doubted;
 }
 
-/// Places to start runs from, which take turns. A vertex all of whose edges are doubted hangs on
-/// one of them, in each on another: starts are to differ in what is not known (Gelman and Rubin
-/// 1992).
-template <int Dimension>
-std::vector<Places<Dimension>> run_starts(const WeightedGraph& graph,
-                                          std::span<const double> lengths,
-                                          std::span<const double> trust) {
-  // Points spread evenly over a ball are that far from its middle on average.
-  constexpr double kStep = Dimension / (Dimension + 1.0);
+/// Places in three dimensions, in steps, to start runs from, which take turns. A vertex all of
+/// whose edges are doubted hangs on one of them, in each on another: starts are to differ in what
+/// is not known (Gelman and Rubin 1992).
+std::vector<Eigen::MatrixXd> run_starts(const WeightedGraph& graph, std::span<const double> lengths,
+                                        std::span<const double> trust) {
   const auto doubted = doubted_vertices(graph, trust);
   const std::size_t count = doubted.empty() ? 1 : affordable_runs(graph.vertex_count());
-  std::vector<Places<Dimension>> starts;
+  std::vector<Eigen::MatrixXd> starts;
   for (std::size_t k = 0; k < count; ++k) {
     std::vector<double> held(trust.begin(), trust.end());
     for (const Index v : doubted) {
       const auto near = graph.neighbours(v);
       held[near[k % near.size()].edge] = 1.0;
     }
-    starts.push_back(kStep * classical_scaling(steps_between(graph, lengths, held), Dimension));
+    starts.push_back(classical_scaling(steps_between(graph, lengths, held), kMostDimensions));
   }
   return starts;
 }
@@ -95,28 +92,30 @@ double spread_of(const Places<Dimension>& places) {
   return std::max(1.0, std::sqrt(places.squaredNorm() / static_cast<double>(places.size())));
 }
 
-template <int Dimension>
-LeftOut sample_often(const Occupied& occupied, std::span<const double> lengths,
-                     const FirstGuess& guess, std::span<const AskedPair> asked,
-                     const SpaceOptions& options) {
-  const Index count = occupied.graph.vertex_count();
-  const ContactGraph contacts(occupied.graph, lengths);
-  const double pair_count = 0.5 * static_cast<double>(count) * static_cast<double>(count - 1);
-  const auto starts = run_starts<Dimension>(occupied.graph, lengths, guess.trust);
-  std::vector<LeftOut> runs(affordable_runs(count));
-  parallel_for(static_cast<std::int64_t>(runs.size()), options.threads, options.progress, "places",
-               [&](std::int64_t k) {
-                 const auto& start = starts[k % starts.size()];
-                 const auto seed = options.seed + static_cast<std::uint64_t>(k);
-                 ContactModel model{kWidth, std::max(1.0, guess.false_count) / pair_count};
-                 model.spread = spread_of<Dimension>(start);
-                 runs[k] = sample_places<Dimension>(contacts, model, start, asked, seed);
-               });
-  LeftOut all = std::move(runs.front());
-  for (std::size_t k = 1; k < runs.size(); ++k) {
-    for (std::size_t p = 0; p < asked.size(); ++p) {
-      all.near[p] += runs[k].near[p];
-      all.weight[p] += runs[k].weight[p];
+/// What all runs in a space of one dimension share.
+struct Runs {
+  const ContactGraph& contacts;
+  std::span<const Eigen::MatrixXd> starts;
+  std::span<const AskedPair> asked;
+  double astray;
+  std::uint64_t seed;
+
+  template <int Dimension>
+  LeftOut sample(std::size_t run) const {
+    // Points spread evenly over a ball are that far from its middle on average.
+    constexpr double kStep = Dimension / (Dimension + 1.0);
+    const Places<Dimension> start = kStep * starts[run % starts.size()].topRows<Dimension>();
+    const ContactModel model{kWidth, astray, spread_of<Dimension>(start)};
+    return sample_places<Dimension>(contacts, model, start, asked, seed + run);
+  }
+};
+
+LeftOut sum_of(std::span<const LeftOut> runs) {
+  LeftOut all = runs.front();
+  for (const auto& run : runs.subspan(1)) {
+    for (std::size_t p = 0; p < all.near.size(); ++p) {
+      all.near[p] += run.near[p];
+      all.weight[p] += run.weight[p];
     }
   }
   return all;
@@ -134,18 +133,30 @@ Measured log_odds(const LeftOut& sums, std::size_t edge_count) {
 
 }  // namespace
 
-std::optional<Measured> space_features(const WeightedGraph& graph, std::span<const double> lengths,
-                                       int dimension, const FirstGuess& guess,
-                                       std::span<const VertexPair> pairs,
-                                       const SpaceOptions& options) {
+std::vector<Measured> space_features(const WeightedGraph& graph, std::span<const double> lengths,
+                                     const FirstGuess& guess, std::span<const VertexPair> pairs,
+                                     const SpaceOptions& options) {
   constexpr Index kFewest = 10;
   const Occupied occupied(graph);
   const Index count = occupied.graph.vertex_count();
-  if (count < kFewest || affordable_runs(count) == 0) return std::nullopt;
+  const auto run_count = static_cast<std::size_t>(affordable_runs(count));
+  if (count < kFewest || run_count == 0) return {};
+  const ContactGraph contacts(occupied.graph, lengths);
+  const auto starts = run_starts(occupied.graph, lengths, guess.trust);
   const auto asked = all_asked(occupied, lengths, pairs);
-  const auto sums = dimension == 2 ? sample_often<2>(occupied, lengths, guess, asked, options)
-                                   : sample_often<3>(occupied, lengths, guess, asked, options);
-  return log_odds(sums, graph.edges().size());
+  const double pair_count = 0.5 * static_cast<double>(count) * static_cast<double>(count - 1);
+  const Runs runs{contacts, starts, asked, std::max(1.0, guess.false_count) / pair_count,
+                  options.seed};
+  std::vector<LeftOut> sums(2 * run_count);
+  parallel_for(static_cast<std::int64_t>(sums.size()), options.threads, options.progress, "places",
+               [&](std::int64_t k) {
+                 const auto run = static_cast<std::size_t>(k) % run_count;
+                 const bool in_plane = static_cast<std::size_t>(k) < run_count;
+                 sums[k] = in_plane ? runs.sample<2>(run) : runs.sample<3>(run);
+               });
+  const std::span<const LeftOut> all(sums);
+  return {log_odds(sum_of(all.first(run_count)), graph.edges().size()),
+          log_odds(sum_of(all.last(run_count)), graph.edges().size())};
 }
 
 }  // namespace isotherm::spectral::detail

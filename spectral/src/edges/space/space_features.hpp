@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
+#include <vector>
 
 #include "edges/odds/pair_features.hpp"
 #include "isotherm/spectral/graph/weighted_graph.hpp"
@@ -27,14 +27,13 @@ struct SpaceOptions {
 /// Places are sampled several times (place_sampler.hpp), from those that steps along trusted edges
 /// suggest (classical_scaling.hpp). A vertex all of whose edges are doubted begins at another of
 /// its neighbours in each run, as none is known to be its.
-/// @param dimension 2 or 3
 /// @param lengths how many original edges each edge stands for
-/// @return log odds, of edges and of pairs in their order; nothing for graphs of fewer than ten
-///   vertices with an edge, or of more than 1,400, where it would take too long
+/// @return log odds, of edges and of pairs in their order, in two and in three dimensions; none for
+///   graphs of fewer than ten vertices with an edge, or of more than 1,400, where it would take too
+///   long
 /// @throws Cancelled
-std::optional<Measured> space_features(const WeightedGraph& graph, std::span<const double> lengths,
-                                       int dimension, const FirstGuess& guess,
-                                       std::span<const VertexPair> pairs,
-                                       const SpaceOptions& options);
+std::vector<Measured> space_features(const WeightedGraph& graph, std::span<const double> lengths,
+                                     const FirstGuess& guess, std::span<const VertexPair> pairs,
+                                     const SpaceOptions& options);
 
 }  // namespace isotherm::spectral::detail

@@ -12,6 +12,8 @@ namespace {
 
 using namespace isotherm_test;
 
+constexpr std::size_t kInPlane = 0, kInSpace = 1;
+
 TEST(SpaceFeatures, TellNearFromFar) {
   Random random(8);
   const auto points = points_in_ball(100, 3, random);
@@ -21,16 +23,15 @@ TEST(SpaceFeatures, TellNearFromFar) {
   auto trust = ones;
   std::fill(trust.end() - false_count, trust.end(), 0.0);
   const std::vector<VertexPair> pairs = {{0, 1}};
-  const auto found = space_features(graph, ones, 3, {trust, 30.0}, pairs, {.threads = 1});
-  ASSERT_TRUE(found);
-  ASSERT_EQ(found->edges.size(), graph.edges().size());
-  ASSERT_EQ(found->pairs.size(), 1U);
+  const auto found = space_features(graph, ones, {trust, 30.0}, pairs, {.threads = 1}).at(kInSpace);
+  ASSERT_EQ(found.edges.size(), graph.edges().size());
+  ASSERT_EQ(found.pairs.size(), 1U);
   std::vector<double> near, far;
   for (Index e = 0; e < graph.edge_count(); ++e) {
     const auto& [from, to, weight] = graph.edge(e);
     const double distance = (points.col(from) - points.col(to)).norm();
-    if (distance < 0.45) near.push_back(found->edges[e]);
-    if (distance > 0.6) far.push_back(found->edges[e]);
+    if (distance < 0.45) near.push_back(found.edges[e]);
+    if (distance > 0.6) far.push_back(found.edges[e]);
   }
   double wins = 0.0;
   for (const double odds : far) {
@@ -38,9 +39,9 @@ TEST(SpaceFeatures, TellNearFromFar) {
         std::count_if(near.begin(), near.end(), [odds](double other) { return other < odds; }));
   }
   EXPECT_GT(wins / static_cast<double>(near.size() * far.size()), 0.95);
-  const auto again = space_features(graph, ones, 3, {trust, 30.0}, pairs, {.threads = 2});
-  EXPECT_EQ(again->edges, found->edges);
-  EXPECT_EQ(again->pairs, found->pairs);
+  const auto again = space_features(graph, ones, {trust, 30.0}, pairs, {.threads = 2}).at(kInSpace);
+  EXPECT_EQ(again.edges, found.edges);
+  EXPECT_EQ(again.pairs, found.pairs);
 }
 
 /// Pearson's.
@@ -60,12 +61,11 @@ TEST(SpaceFeatures, HardlyDependOnTheSeedAndTheOrderOfVertices) {
   std::vector<WeightedEdge> edges;
   for (const auto& [from, to, weight] : graph.edges()) edges.push_back({119 - to, 119 - from, 1.0});
   const WeightedGraph turned(120, edges);
-  const auto found = space_features(graph, ones, 3, {trust, 30.0}, {}, {.seed = 1});
-  const auto other = space_features(graph, ones, 3, {trust, 30.0}, {}, {.seed = 100});
-  const auto back = space_features(turned, ones, 3, {trust, 30.0}, {}, {.seed = 1});
-  ASSERT_TRUE(found && other && back);
-  EXPECT_GT(correlation(found->edges, other->edges), 0.95);
-  EXPECT_GT(correlation(found->edges, back->edges), 0.95);
+  const auto found = space_features(graph, ones, {trust, 30.0}, {}, {.seed = 1}).at(kInSpace);
+  const auto other = space_features(graph, ones, {trust, 30.0}, {}, {.seed = 100}).at(kInSpace);
+  const auto back = space_features(turned, ones, {trust, 30.0}, {}, {.seed = 1}).at(kInSpace);
+  EXPECT_GT(correlation(found.edges, other.edges), 0.95);
+  EXPECT_GT(correlation(found.edges, back.edges), 0.95);
 }
 
 TEST(SpaceFeatures, DoubtAllEdgesOfAVertexThatLeadApart) {
@@ -85,10 +85,9 @@ TEST(SpaceFeatures, DoubtAllEdgesOfAVertexThatLeadApart) {
   const auto ones = equal_worth(graph);
   auto trust = ones;
   std::fill(trust.end() - 3, trust.end(), 0.0);
-  const auto found = space_features(graph, ones, 2, {trust, 3.0}, {}, {});
-  ASSERT_TRUE(found);
-  for (std::size_t k = found->edges.size() - 3; k < found->edges.size(); ++k) {
-    EXPECT_GT(found->edges[k], 3.0);
+  const auto found = space_features(graph, ones, {trust, 3.0}, {}, {}).at(kInPlane);
+  for (std::size_t k = found.edges.size() - 3; k < found.edges.size(); ++k) {
+    EXPECT_GT(found.edges[k], 3.0);
   }
 }
 
@@ -100,11 +99,9 @@ TEST(SpaceFeatures, TakePartsAndRepeatedEdges) {
   const auto ones = equal_worth(twice);
   const std::vector<VertexPair> pairs = {{0, 6}, {0, 17}};
   for (const auto& trust : {ones, equal_worth(twice, 0.0)}) {
-    for (const int dimension : {2, 3}) {
-      const auto found = space_features(twice, ones, dimension, {trust, 0.0}, pairs, {});
-      ASSERT_TRUE(found);
-      for (const double odds : found->edges) EXPECT_LT(std::abs(odds), 14.0);
-      for (const double odds : found->pairs) EXPECT_LT(std::abs(odds), 14.0);
+    for (const auto& found : space_features(twice, ones, {trust, 0.0}, pairs, {})) {
+      for (const double odds : found.edges) EXPECT_LT(std::abs(odds), 14.0);
+      for (const double odds : found.pairs) EXPECT_LT(std::abs(odds), 14.0);
     }
   }
 }
@@ -113,7 +110,7 @@ TEST(SpaceFeatures, AreNotThoseOfFewOrManyVertices) {
   const auto few = complete_graph(9), many = ring_graph(1401);
   for (const auto& graph : {WeightedGraph(), few, many}) {
     const auto ones = equal_worth(graph);
-    EXPECT_FALSE(space_features(graph, ones, 2, {ones, 0.0}, {}, {}));
+    EXPECT_TRUE(space_features(graph, ones, {ones, 0.0}, {}, {}).empty());
   }
 }
 
@@ -122,11 +119,10 @@ TEST(SpaceFeatures, LeaveOutVerticesWithoutEdges) {
   const auto apart = disjoint_union(WeightedGraph(3, {}), ring);
   const auto ones = equal_worth(ring);
   const std::vector<VertexPair> pairs = {{0, 10}}, shifted = {{3, 13}};
-  const auto found = space_features(ring, ones, 2, {ones, 1.0}, pairs, {});
-  const auto other = space_features(apart, ones, 2, {ones, 1.0}, shifted, {});
-  ASSERT_TRUE(found && other);
-  EXPECT_EQ(found->edges, other->edges);
-  EXPECT_EQ(found->pairs, other->pairs);
+  const auto found = space_features(ring, ones, {ones, 1.0}, pairs, {}).at(kInPlane);
+  const auto other = space_features(apart, ones, {ones, 1.0}, shifted, {}).at(kInPlane);
+  EXPECT_EQ(found.edges, other.edges);
+  EXPECT_EQ(found.pairs, other.pairs);
 }
 
 }  // namespace
