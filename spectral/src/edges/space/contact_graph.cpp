@@ -84,13 +84,14 @@ std::vector<VertexPair> ContactGraph::open_pairs(const Places<Dimension>& places
   std::vector<Index> order(static_cast<std::size_t>(vertex_count_));
   std::iota(order.begin(), order.end(), Index{0});
   std::ranges::sort(order, {}, [&](Index v) { return places(0, v); });
+  const Places<Dimension> sorted = places(Eigen::all, order);
   std::vector<VertexPair> pairs;
-  for (auto first = order.begin(); first != order.end(); ++first) {
-    const char* joined = joined_.data() + static_cast<std::size_t>(*first) * vertex_count_;
-    const double end = places(0, *first) + distance;
-    for (auto other = first + 1; other != order.end() && places(0, *other) < end; ++other) {
-      const double squared = (places.col(*first) - places.col(*other)).squaredNorm();
-      if (squared < distance * distance && joined[*other] == 0) pairs.push_back({*first, *other});
+  for (Index k = 0; k < vertex_count_; ++k) {
+    const char* joined = joined_.data() + static_cast<std::size_t>(order[k]) * vertex_count_;
+    const double end = sorted(0, k) + distance;
+    for (Index other = k + 1; other < vertex_count_ && sorted(0, other) < end; ++other) {
+      if ((sorted.col(k) - sorted.col(other)).squaredNorm() >= distance * distance) continue;
+      if (joined[order[other]] == 0) pairs.push_back({order[k], order[other]});
     }
   }
   return pairs;
