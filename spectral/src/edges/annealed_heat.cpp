@@ -326,7 +326,9 @@ AnnealedHeat anneal_reduced(const WeightedGraph& graph, std::span<const double> 
       heat = std::move(doubting);
     }
   }
-  if (!in_plane) judgement = rounds.weigh_places(std::move(heat), std::move(judgement), lengths);
+  if (!in_plane && options.places) {
+    judgement = rounds.weigh_places(std::move(heat), std::move(judgement), lengths);
+  }
   AnnealedHeat result;
   result.scale = walks.scale;
   result.horizon = walks.horizon;
