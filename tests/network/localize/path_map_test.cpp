@@ -1,7 +1,5 @@
 #include "localize/start/path_map.hpp"
 
-#include <limits>
-
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
@@ -39,31 +37,6 @@ TEST(PathMap, IsTheNetworkUpToAnIsometry) {
         map_by_paths(problem, all_of(problem), all_of(problem), Errors::any, kGate, {});
     EXPECT_GT(share_near(map, simulated.truth, 0.3 * simulated.radius), 0.9) << dimension;
   }
-}
-
-TEST(PathMap, TakesNoShortcutThroughANodeWithTwoRanges) {
-  auto simulated =
-      simulate_network({.nodes = 250, .anchors = 0, .degree = 14.0, .noise = 0.02, .seed = 3});
-  auto& network = simulated.network;
-  Index low = 0, high = 0;  // the nodes in opposite corners
-  const Eigen::RowVectorXd along = simulated.truth.colwise().sum();
-  along.minCoeff(&low);
-  along.maxCoeff(&high);
-  const auto between = static_cast<Index>(network.names.size());
-  network.names.push_back("between");
-  network.positions.conservativeResize(Eigen::NoChange, between + 1);
-  network.positions.col(between).setConstant(std::numeric_limits<double>::quiet_NaN());
-  for (const Index end : {low, high}) {
-    RangeMeasurement range;
-    range.from = between;
-    range.to = end;
-    range.distance = 0.5 * simulated.radius;
-    network.ranges.push_back(range);
-  }
-  const auto problem = make_problem(network);
-  const auto map = map_by_paths(problem, all_of(problem), all_of(problem), Errors::any, kGate, {});
-  EXPECT_TRUE(map.placed[between]);
-  EXPECT_GT(share_near(map, simulated.truth, 0.3 * simulated.radius), 0.9);
 }
 
 TEST(PathMap, StandsRangesThatAreTooLong) {

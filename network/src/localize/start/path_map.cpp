@@ -16,48 +16,25 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-// Nodes with more pairs than some place satisfies whatever they say. With fewer, a false one goes
-// unnoticed: of a chain through a node with two, heat cannot even tell which of both is false.
-std::vector<bool> held_nodes(const RangeProblem& problem, const std::vector<bool>& trusted) {
-  std::vector<int> pairs(problem.nodes, 0);
-  for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
-    if (!trusted[p]) continue;
-    ++pairs[problem.pairs[p].from];
-    ++pairs[problem.pairs[p].to];
-  }
-  std::vector<bool> held;
-  for (const int count : pairs) held.push_back(count > problem.dimension);
-  return held;
-}
-
-// Lengths of the shortest of the paths from a node that lead through the fewest nodes that are not
-// held (Dijkstra).
+// Lengths of the shortest paths from a node (Dijkstra).
 Eigen::VectorXd path_lengths(const RangeProblem& problem, const std::vector<bool>& trusted,
-                             const std::vector<bool>& held, Index start) {
-  struct Path {
-    Index not_held = 0;
-    double length = 0.0;
-    auto operator<=>(const Path&) const = default;
-  };
-  std::vector<Path> best(problem.nodes, {problem.nodes, kFar});
-  using Entry = std::pair<Path, Index>;
+                             Index start) {
+  Eigen::VectorXd length = Eigen::VectorXd::Constant(problem.nodes, kFar);
+  using Entry = std::pair<double, Index>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  best[start] = {};
-  queue.emplace(best[start], start);
+  length[start] = 0.0;
+  queue.emplace(0.0, start);
   while (!queue.empty()) {
     const auto [reached, node] = queue.top();
     queue.pop();
-    if (reached > best[node]) continue;
-    const Index passed = node != start && !held[node] ? 1 : 0;
+    if (reached > length[node]) continue;
     for (const auto& [vertex, edge] : problem.pair_graph.neighbours(node)) {
-      const Path longer{reached.not_held + passed, reached.length + problem.pairs[edge].distance};
-      if (!trusted[edge] || longer >= best[vertex]) continue;
-      best[vertex] = longer;
+      const double longer = reached + problem.pairs[edge].distance;
+      if (!trusted[edge] || longer >= length[vertex]) continue;
+      length[vertex] = longer;
       queue.emplace(longer, vertex);
     }
   }
-  Eigen::VectorXd length(problem.nodes);
-  for (Index v = 0; v < problem.nodes; ++v) length[v] = best[v].length;
   return length;
 }
 
@@ -92,12 +69,11 @@ Pilots choose_pilots(const RangeProblem& problem, const std::vector<bool>& trust
   const auto count = std::min(kMost, n);
   Pilots pilots;
   pilots.squared.resize(n, count);
-  const auto held = held_nodes(problem, trusted);
   Eigen::VectorXd nearest = Eigen::VectorXd::Constant(n, kFar);
   Eigen::Index next = 0;
   for (Eigen::Index k = 0; k < count; ++k) {
     pilots.which.push_back(static_cast<Index>(next));
-    const Eigen::VectorXd length = path_lengths(problem, trusted, held, nodes[next])(nodes);
+    const Eigen::VectorXd length = path_lengths(problem, trusted, nodes[next])(nodes);
     pilots.squared.col(k) = length.cwiseAbs2();
     nearest = nearest.cwiseMin(length);
     nearest.maxCoeff(&next);

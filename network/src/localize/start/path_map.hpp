@@ -14,7 +14,6 @@ enum class Errors { any, too_long };
 /// paths to pilot nodes and scaling (V. de Silva, J. Tenenbaum, "Sparse multidimensional scaling
 /// using landmark points", 2004), then springs, of all trusted pairs, whose loss narrows. Nodes
 /// nearer to each other than `absence.reach()` without a range repel each other, which opens folds.
-/// Paths lead through nodes with no more pairs than dimensions only where there is no other way.
 /// With `Errors::too_long` ranges shorter than the distance of their ends keep a wide loss.
 /// O(pilots * ranges * log nodes) and the factorisations of the springs. Nothing is placed if
 /// there are too few nodes. @throws Cancelled
