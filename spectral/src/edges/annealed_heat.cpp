@@ -13,6 +13,7 @@
 #include "edges/odds/step_counter.hpp"
 #include "edges/odds/two_groups.hpp"
 #include "edges/planar/plane_features.hpp"
+#include "edges/space/space_features.hpp"
 #include "edges/thin_out.hpp"
 #include "graph/bridges.hpp"
 #include "graph/series_reduction.hpp"
@@ -71,6 +72,12 @@ struct Judgement {
   double log_evidence = 0.0;
 };
 
+/// What may be known of where edges and pairs lie.
+struct Layout {
+  std::optional<PlaneFeatures> plane;
+  std::optional<Measured> space;
+};
+
 /// The rounds of one graph, which branch after the first.
 class Rounds {
  public:
@@ -119,18 +126,18 @@ class Rounds {
 
   /// Weighs all that is measured in the graph that trusts what is more likely true than false, and
   /// again in the graph that this leaves, until probabilities settle.
-  Judgement weigh(Judgement heat, const std::optional<PlaneFeatures>& plane) const {
+  Judgement weigh(Judgement heat, const Layout& layout) const {
     constexpr double kMostRounds = 10.0;
     constexpr double kMostEdges = 1e6;  // over all rounds: large graphs settle by their size
     const double affordable = kMostEdges / std::max(1.0, static_cast<double>(graph_.edge_count()));
     const int most_rounds = static_cast<int>(std::clamp(affordable, 1.0, kMostRounds));
     heat.pairs = thin_out(heat.pairs);
     // To begin with, what crosses others vouches for none, and what crosses none is true.
-    if (plane) {
-      std::ranges::transform(plane->crossings.edges, heat.groups.truth.begin(),
+    if (layout.plane) {
+      std::ranges::transform(layout.plane->crossings.edges, heat.groups.truth.begin(),
                              [](double crossed) { return crossed > 0.0 ? 0.0 : 1.0; });
     }
-    auto judgement = odds(heat, plane);
+    auto judgement = odds(heat, layout);
     for (int round = 0; round < most_rounds; ++round) {
       const auto trust = vouching(judgement.groups.truth);
       const auto affinities =
@@ -139,11 +146,29 @@ class Rounds {
       update_scores(affinities.edges, heat.edges);
       update_scores(affinities.pairs, heat.pairs);
       heat.groups = judgement.groups;
-      judgement = odds(heat, plane);
+      judgement = odds(heat, layout);
       if (have_settled(heat.groups, judgement.groups)) break;
     }
-    if (!plane) doubt_the_farthest(heat, judgement);
+    if (!layout.plane) doubt_the_farthest(heat, judgement);
     return judgement;
+  }
+
+  /// Weighs, too, how far from each other places put the ends, if the graph is small enough and the
+  /// answer leaves something to tell: more than half an edge expected to be wrong. Places are those
+  /// of the edges that the answer so far believes, in two and in three dimensions; of all answers
+  /// that of the highest evidence is taken.
+  Judgement weigh_places(Judgement heat, Judgement answer, std::span<const double> lengths) const {
+    constexpr double kHalfAnEdge = 0.5;
+    if (expected_errors(answer.groups.truth) <= kHalfAnEdge) return answer;
+    heat.groups = answer.groups;
+    const auto trust = trust_of(answer.groups.truth, kEven);
+    const FirstGuess guess{trust, answer.groups.false_count};
+    for (auto& space : space_features(graph_, lengths, guess, thin_out(pairs_),
+                                      {options_.seed, options_.threads, options_.progress})) {
+      auto other = weigh(heat, {{}, std::move(space)});
+      if (other.log_evidence > answer.log_evidence) answer = std::move(other);
+    }
+    return answer;
   }
 
  private:
@@ -167,6 +192,13 @@ class Rounds {
     false_count = std::max(false_count, expected);
   }
 
+  /// How many edges are expected to be other than what is more likely.
+  static double expected_errors(std::span<const double> truth) {
+    double errors = 0.0;
+    for (const double p : truth) errors += std::min(p, 1.0 - p);
+    return errors;
+  }
+
   /// Whether no more than one false edge in a hundred, or half an edge, changed its place.
   static bool have_settled(const TwoGroups& before, const TwoGroups& after) {
     constexpr double kShare = 0.01;
@@ -179,7 +211,8 @@ class Rounds {
 
   /// From a judgement by heat. Edges whose ends no walk joins vouch for none, unless crossings
   /// tell which of them are true.
-  Judgement odds(const Judgement& heat, const std::optional<PlaneFeatures>& plane) const {
+  Judgement odds(const Judgement& heat, const Layout& layout) const {
+    const auto& [plane, space] = layout;
     auto truth = heat.groups.truth;
     for (std::size_t k = 0; k < truth.size(); ++k) {
       if (!plane && heat.edges[k] >= kNoWalk) truth[k] = 0.0;
@@ -190,6 +223,7 @@ class Rounds {
     if (plane) {
       measured.insert(measured.end(), {plane->crossings, plane->few_crossings, plane->distances});
     }
+    if (space) measured.push_back(*space);
     // As far as walks go.
     const auto trust = vouching(truth);
     const auto features = pair_features(graph_, {truth, trust}, thin_out(pairs_), measured,
@@ -278,18 +312,27 @@ AnnealedHeat anneal_reduced(const WeightedGraph& graph, std::span<const double> 
   if (graph.edge_count() == 0) return {};
   const Rounds rounds(graph, options);
   const auto first = rounds.first();
-  const auto heat = rounds.trusting(first);
+  auto heat = rounds.trusting(first);
   const auto walks = rounds.walks(options.rounds - 1, heat.groups.truth);
-  const auto plane = plane_features(graph, lengths, heat.edges, thin_out(rounds.pairs()), walks);
-  auto judgement = rounds.weigh(heat, plane);
-  if (!plane && options.rounds > 2) {
-    auto other = rounds.weigh(rounds.doubting(first), plane);
-    if (other.log_evidence > judgement.log_evidence) judgement = std::move(other);
+  const Layout layout{plane_features(graph, lengths, heat.edges, thin_out(rounds.pairs()), walks),
+                      {}};
+  const bool in_plane = layout.plane.has_value();
+  auto judgement = rounds.weigh(heat, layout);
+  if (!in_plane && options.rounds > 2) {
+    auto doubting = rounds.doubting(first);
+    auto other = rounds.weigh(doubting, layout);
+    if (other.log_evidence > judgement.log_evidence) {
+      judgement = std::move(other);
+      heat = std::move(doubting);
+    }
+  }
+  if (!in_plane && options.places) {
+    judgement = rounds.weigh_places(std::move(heat), std::move(judgement), lengths);
   }
   AnnealedHeat result;
   result.scale = walks.scale;
   result.horizon = walks.horizon;
-  result.in_plane = plane.has_value();
+  result.in_plane = in_plane;
   result.scores = std::move(judgement.edges);
   result.false_count = judgement.groups.false_count;
   result.truth = std::move(judgement.groups.truth);
@@ -298,7 +341,7 @@ AnnealedHeat anneal_reduced(const WeightedGraph& graph, std::span<const double> 
   const double least = std::ranges::min(result.scores);
   for (double& score : result.scores) score -= least;
   // Shortcuts that run side by side vouch for each other, and many of their neighbours are doubted.
-  const double chance = plane ? std::min(options.chance, kEven) : options.chance;
+  const double chance = in_plane ? std::min(options.chance, kEven) : options.chance;
   result.threshold = rejection_threshold(result.scores, {result.truth, result.false_count}, chance);
   return result;
 }

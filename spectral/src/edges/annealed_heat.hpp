@@ -14,6 +14,7 @@ struct AnnealedHeatOptions {
   int rounds = 3;       ///< >= 1
   double chance = 0.7;  ///< edges less likely true take no part in the next round
   ControlGroup control = ControlGroup::anywhere;
+  bool places = true;  ///< weigh where vertices of small graphs might be
   std::uint64_t seed = 1;
   int threads = 0;
   ProgressCallback progress = {};

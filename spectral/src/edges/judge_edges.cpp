@@ -80,6 +80,7 @@ detail::AnnealedHeat weigh_all(const Structure& structure, const JudgeEdgesOptio
   return detail::anneal_heat(structure.simple.graph, {.rounds = options.rounds,
                                                       .chance = options.chance,
                                                       .control = options.control,
+                                                      .places = options.places,
                                                       .seed = run.seed,
                                                       .threads = run.threads,
                                                       .progress = run.progress});

@@ -89,6 +89,21 @@ std::pair<double, double> heat_errors(const WeightedGraph& graph, Index false_co
   return {pruned / true_count, left / std::max<Index>(1, false_count)};
 }
 
+TEST(JudgeEdges, HeatWeighsPlacesUnlessToldNotTo) {
+  Random random(93);
+  const Index false_count = 120;
+  const auto graph = with_false_edges(300, 0.1, false_count, random);
+  const auto errors = [&](const JudgeEdgesOptions& options) {
+    Index count = 0;
+    for (const auto& verdict : judge_edges(graph, options).verdicts) {
+      const bool is_false = verdict.edge >= graph.edge_count() - false_count;
+      if ((verdict.verdict == Verdict::prune) != is_false) ++count;
+    }
+    return count;
+  };
+  EXPECT_LT(errors({}), errors({.places = false}));
+}
+
 TEST(JudgeEdges, HeatKeepsCleanGraphs) {
   Random random(82);
   EXPECT_LE(heat_errors(with_false_edges(800, 0.07, 0, random), 0).first, 0.003);

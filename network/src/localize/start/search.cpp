@@ -210,8 +210,9 @@ std::vector<bool> likely_pairs(const RangeProblem& problem, double chance,
     return likely;
   }
   constexpr std::uint64_t kSeed = 1;  // of the random pairs that ranges are compared with
+  // Places are for the ranges to tell, which know more of them than that two nodes have one.
   const auto judged = spectral::judge_edges(
-      problem.pair_graph, {.chance = chance}, {},
+      problem.pair_graph, {.chance = chance, .places = false}, {},
       {.threads = options.threads, .progress = options.progress, .seed = kSeed});
   for (const auto& verdict : judged.verdicts) {
     likely[verdict.edge] = verdict.verdict != spectral::Verdict::prune;
