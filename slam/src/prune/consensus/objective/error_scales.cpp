@@ -10,7 +10,6 @@ namespace isotherm::slam::detail {
 namespace {
 
 constexpr double kWorst = kScaleStep * kScaleStep;
-constexpr double kNever = -1e9;  // log of no probability
 constexpr double kOther = kLoopsBefore / 3.0;
 constexpr ByScale kPriorLoops = {kLoopsBefore, kOther, kOther, kOther};
 

@@ -11,6 +11,8 @@ namespace isotherm::slam::detail {
 inline constexpr std::size_t kScaleCount = 4;
 using ByScale = std::array<double, kScaleCount>;
 
+inline constexpr double kNever = -1e9;  ///< log of no probability
+
 /// What is believed of the scale of one loop.
 struct ErrorScale {
   ByScale probability{};
@@ -53,6 +55,9 @@ struct ScaleMixture {
   double scale = 1.0;  ///< on the stated covariance, of most
   ByScale relative{};  ///< scales against that of most, ascending
   ByScale log_share{};
+
+  /// Whether any can be of this scale.
+  bool has(std::size_t scale_number) const { return log_share[scale_number] > kNever; }
 
   /// Of those that are not as accurate as most.
   double share_of_worse() const;

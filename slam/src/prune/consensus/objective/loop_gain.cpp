@@ -96,7 +96,9 @@ LoopGain loop_gain(const Prediction<Pose>& prediction, const ScaleMixture& mixtu
   const Factors odometry = factors(deviation.odometry);
   const Factors own = factors(deviation.loops);
   ByScale density;
+  density.fill(kNever);
   for (std::size_t j = 0; j < kScaleCount; ++j) {
+    if (!mixture.has(j)) continue;
     const Nodes own_variance = mixture.scale * mixture.relative[j] * own.value;
     Nodes by_odometry = odometry.log_weight;
     for (Eigen::Index i = 0; i < odometry.value.size(); ++i) {
