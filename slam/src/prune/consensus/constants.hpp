@@ -6,14 +6,14 @@
 
 /// Every constant that consensus decides by: what it means, its unit, and where it comes from. What
 /// each is worth, on graphs that none was chosen on, is in docs/results/ablation.md. Constants that
-/// guard against rounding, bound repetitions or tell how long a step takes stand where they are
-/// used: they change no verdict.
+/// guard against rounding, bound repetitions or samples, or tell how long a step takes stand where
+/// they are used.
 namespace isotherm::slam::detail {
 
 // The model.
 
-/// Deviation of the log of a factor on covariances, of all coordinates and of each: files are off
-/// by a factor of ten in the error as likely as not by more.
+/// Deviation of the log of a factor on covariances, of all coordinates and of each: that of a
+/// factor of ten in the error.
 inline constexpr double kScaleDeviation = 2.0 * std::numbers::ln10;
 
 /// Of variances, from one kind of loop to the next: a scale between two is off by a factor of 1.3
@@ -24,7 +24,7 @@ inline constexpr double kScaleStep = 3.0;
 /// share of either nothing is known (a uniform distribution).
 inline constexpr double kLoopsBefore = 1.0;
 
-/// Deviations to which the kernel of near pairs reaches: all but a thousandth of it.
+/// Deviations to which the kernel of near pairs reaches: beyond, it is below .003 of its peak.
 inline constexpr double kReach = 3.5;
 
 /// Of a map's least extent to its largest: false loops leave the plane of a flat map.

@@ -45,9 +45,8 @@ void invert_large_front(const EliminatedFront<Scalar>& eliminated, View inverse,
   inverse.topRightCorner(width, outside) = below.transpose();
 }
 
-Eigen::Index entries(const FrontTree& tree, Index front) {
-  const Eigen::Index order = Eigen::Index{tree.size(front)} * tree.block_size();
-  return order * order;
+Eigen::Index order_of(const FrontTree& tree, Index front) {
+  return Eigen::Index{tree.size(front)} * tree.block_size();
 }
 
 // On any way to a root, of which all fronts are held at once.
@@ -56,7 +55,8 @@ Eigen::Index most_entries(const FrontTree& tree) {
   Eigen::Index most = 0;
   for (Index front = tree.front_count() - 1; front >= 0; --front) {
     const Index parent = tree.parent(front);
-    on_the_way[front] = entries(tree, front) + (parent < 0 ? 0 : on_the_way[parent]);
+    const Eigen::Index order = order_of(tree, front);
+    on_the_way[front] = order * order + (parent < 0 ? 0 : on_the_way[parent]);
     most = std::max(most, on_the_way[front]);
   }
   return most;
@@ -76,9 +76,9 @@ typename FrontInverses<Scalar>::View FrontInverses<Scalar>::enter(
     top_ = ancestors_.back().begin;
     ancestors_.pop_back();
   }
-  const Eigen::Index order = Eigen::Index{tree_.size(front)} * tree_.block_size();
+  const Eigen::Index order = order_of(tree_, front);
   const Eigen::Index width = Eigen::Index{tree_.width(front)} * tree_.block_size();
-  const Eigen::Index begin = std::exchange(top_, top_ + entries(tree_, front));
+  const Eigen::Index begin = std::exchange(top_, top_ + order * order);
   const View inverse(stack_.data() + begin, order, order, Eigen::OuterStride<>(order));
   if (order > width) {
     gather(front, View(stack_.data() + begin + width * (order + 1), order - width, order - width,
@@ -102,7 +102,7 @@ void FrontInverses<Scalar>::gather(Index front, View corner) {
     for (int k = 0; k < d; ++k) places_.push_back(Eigen::Index{place} * d + k);
   }
   const Scalar* source = stack_.data() + ancestors_.back().begin;
-  const Eigen::Index stride = Eigen::Index{tree_.size(tree_.parent(front))} * d;
+  const Eigen::Index stride = order_of(tree_, tree_.parent(front));
   for (Eigen::Index j = 0; j < corner.cols(); ++j) {
     const Scalar* from = source + places_[j] * stride;
     Scalar* to = corner.data() + j * corner.outerStride();
