@@ -97,7 +97,7 @@ def instrument(tree):
     (room / "constants.hpp").write_text(
         text.replace("#pragma once\n", "#pragma once\n#include <cstdlib>\n", 1), "utf-8")
     # What follows from them is no longer known to the compiler.
-    replace(room / "climb/learn.cpp", [("constexpr double kMostOwn", "const double kMostOwn")])
+    replace(room / "climb/learn.cpp", [("constexpr double kMostApart", "const double kMostApart")])
     replace(room / "objective/scale_prior.hpp",
             [("inline constexpr double kMostScale", "inline const double kMostScale")])
     replace(room / "objective/error_scales.cpp",

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "isotherm/base/random.hpp"
+#include "prune/consensus/objective/scale_prior.hpp"
 #include "slam/loop_graph.hpp"
 
 namespace isotherm::slam::detail {
@@ -44,6 +45,27 @@ TYPED_TEST(LessonOf, CallsMostWhatMostAre) {
   EXPECT_NEAR(lesson.scale.loops, 1.0, 0.3);
   EXPECT_GT(lesson.shares.loops[0], 0.9 * (lesson.shares.loops[0] + lesson.shares.loops[1]));
   EXPECT_GT(lesson.gain, 0.0);
+}
+
+// The peak of what is learnt from: cost and redundancy of each coordinate against the prior, though
+// coordinates are told in units that are a thousand times off.
+TYPED_TEST(LessonOf, ScalesOfCoordinatesAreWhereTheGradientIsZero) {
+  using Pose = TypeParam;
+  using Tangent = typename Pose::Tangent;
+  for (auto& constraint : this->graph_.constraints) {
+    constraint.information.template topRows<Pose::kDim>() *= 30.0;
+    constraint.information.template leftCols<Pose::kDim>() *= 30.0;
+  }
+  const Objective<Pose> objective(this->graph_, edge_roles(this->graph_), 20);
+  Assessment<Pose> assessment(objective);
+  const auto now = this->assess(assessment, {1.0, 1.0}, {{60.0, 0.0, 0.0, 0.0}});
+  const auto lesson = learn(assessment, now, false);
+  const Tangent logs = log_scales(lesson.scale.odometry, lesson.shapes.odometry);
+  ASSERT_GT(logs.maxCoeff() - logs.minCoeff(), 1.0);
+  const Tangent fitted = now.odometry_cost.cwiseProduct((-logs).array().exp().matrix());
+  const Tangent gradient =
+      0.5 * (fitted - now.redundancy.odometry) - prior_precision<Tangent>() * logs;
+  EXPECT_LT(gradient.cwiseAbs().maxCoeff(), 1e-6 * now.redundancy.odometry.maxCoeff());
 }
 
 // As measured, with the map and odometry where they go then.

@@ -6,15 +6,19 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Cholesky>
+
 #include "prune/consensus/constants.hpp"
 #include "prune/consensus/objective/scale_prior.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
 
-// Of a coordinate against the others: a deviation of the prior. Contracted odometry is no longer
-// linear within deviations that are farther apart.
-constexpr double kMostOwn = kScaleDeviation;
+// Of logs of two coordinates' factors, each a deviation of the prior from the common one.
+// Contracted odometry is no longer linear within deviations that are farther apart, and where
+// nothing is measured (across the floor that a robot drives on) factors are as small as they may
+// be.
+constexpr double kMostApart = 2.0 * kScaleDeviation;
 constexpr double kLeastRedundancy = 1e-6;  // less is rounding
 constexpr int kRepetitions = 10;           // of expectation maximisation
 
@@ -31,6 +35,8 @@ double drawn_in(double cost, double redundancy) {
 /// Measurements of one kind, by coordinate.
 template <class Tangent>
 struct Component {
+  using Precision = Eigen::Matrix<double, Tangent::SizeAtCompileTime, Tangent::SizeAtCompileTime>;
+
   Tangent cost;  // in the file's units
   Tangent redundancy;
 
@@ -67,21 +73,18 @@ struct Component {
   }
 
  private:
-  // A factor of all coordinates and one of each take turns. One that is as small as it may be tells
-  // nothing of the others: across the floor that a robot drives on, nothing is measured.
+  // Newton's method on what evidence() says, which is concave, from cost over redundancy.
   Tangent by_coordinate() const {
-    double common = 0.0;
-    Tangent own = Tangent::Zero();
+    Tangent logs;
+    for (Eigen::Index d = 0; d < logs.size(); ++d) logs[d] = drawn_in(cost[d], redundancy[d]);
+    const Precision prior = prior_precision<Tangent>();
     for (int k = 0; k < kRepetitions; ++k) {
-      const Tangent telling = (own.array() > -kMostOwn).template cast<double>();
-      common = drawn_in(cost.cwiseProduct(telling).dot((-own).array().exp().matrix()),
-                        redundancy.dot(telling));
-      for (Eigen::Index d = 0; d < own.size(); ++d) {
-        const double likeliest = drawn_in(cost[d] * std::exp(-common), redundancy[d]);
-        own[d] = std::clamp(likeliest, -kMostOwn, kMostOwn);
-      }
+      const Tangent fitted = 0.5 * cost.cwiseProduct((-logs).array().exp().matrix());
+      const Tangent gradient = fitted - 0.5 * redundancy - prior * logs;
+      const Precision curvature = prior + Precision(fitted.asDiagonal());
+      logs += curvature.llt().solve(gradient).cwiseMax(-1.0).cwiseMin(1.0);
     }
-    return (common + own.array()).max(-kMostScale).min(kMostScale);
+    return logs.cwiseMax(logs.maxCoeff() - kMostApart).cwiseMax(-kMostScale).cwiseMin(kMostScale);
   }
 };
 
@@ -119,7 +122,7 @@ ScaleShares weigh(const ScaleMixture& mixture, std::vector<Residual<Pose>>& resi
     const double chi2 = residual.chi2() / mixture.scale;
     const ErrorScale error = error_scale(mixture, chi2, residual.redundancy);
     residual.weight = error.weight;
-    shares.add(error, residual.redundancy / Pose::kDof);
+    shares.add(error);
   }
   return shares;
 }
@@ -166,33 +169,43 @@ std::pair<double, Tangent> scale_and_shape(const Tangent& logs) {
   return {std::exp(logs.mean()), (logs.array() - logs.mean()).exp()};
 }
 
-// From this scale called that of most, with these residuals of loops; what they gain is not yet
-// against how likely they were before.
+// What odometry tells of its own; loops as they are.
 template <class Pose>
-Lesson<Pose> lesson_from(const ScaleShift& start, const Explanation<Pose>& explanation,
-                         std::vector<Residual<Pose>> residuals, bool same_shapes) {
+Lesson<Pose> of_odometry(const Explanation<Pose>& explanation, bool same_shapes) {
   using Tangent = typename Pose::Tangent;
-  const auto& [scale, shapes, redundancy] =
-      std::tie(explanation.scale, explanation.shapes, explanation.redundancy);
-  Lesson<Pose> lesson;
-  lesson.shares = likeliest_from(start, scale.loops, residuals);
-  Tangent loops_cost = Tangent::Zero();
-  for (const auto& residual : residuals) loops_cost += residual.weight * residual.parts;
+  const auto& [scale, shapes] = std::tie(explanation.scale, explanation.shapes);
   const Component<Tangent> odometry{explanation.odometry_cost.cwiseProduct(shapes.odometry),
-                                    redundancy.odometry};
-  const Component<Tangent> loops{loops_cost.cwiseProduct(shapes.loops), redundancy.loops};
-  const Tangent odometry_before = log_scales(scale.odometry, shapes.odometry);
-  const Tangent loops_before = log_scales(scale.loops, shapes.loops);
-  const Tangent odometry_now = told_apart<Pose>(odometry).likeliest(odometry_before, same_shapes);
-  const Tangent loops_now = told_apart<Pose>(loops).likeliest(loops_before, same_shapes);
+                                    explanation.redundancy.odometry};
+  const Tangent before = log_scales(scale.odometry, shapes.odometry);
+  const Tangent now = told_apart<Pose>(odometry).likeliest(before, same_shapes);
+  Lesson<Pose> lesson{scale, shapes, explanation.shares};
+  const double gain = odometry.evidence(now) - odometry.evidence(before);
+  if (gain <= 0.0) return lesson;
+  lesson.gain = gain;
+  std::tie(lesson.scale.odometry, lesson.shapes.odometry) = scale_and_shape(now);
+  return lesson;
+}
 
-  std::tie(lesson.scale.odometry, lesson.shapes.odometry) = scale_and_shape(odometry_now);
-  std::tie(lesson.scale.loops, lesson.shapes.loops) = scale_and_shape(loops_now);
-  lesson.gain = odometry.evidence(odometry_now) - odometry.evidence(odometry_before) +
-                log_scale_peak(loops_now, redundancy.loops) -
-                log_scale_peak(loops_before, redundancy.loops) -
-                0.5 * redundancy.loops.dot(loops_now - loops_before);
-  const Tangent change = lesson.shapes.loops.cwiseQuotient(shapes.loops);
+// What loops with these residuals tell of their own, from this scale called that of most, beside
+// `lesson`; what they gain is not yet against how likely they were before.
+template <class Pose>
+Lesson<Pose> of_loops(const ScaleShift& start, const Explanation<Pose>& explanation,
+                      std::vector<Residual<Pose>> residuals, bool same_shapes,
+                      Lesson<Pose> lesson) {
+  using Tangent = typename Pose::Tangent;
+  const double scale = explanation.scale.loops;
+  const Tangent& shape = explanation.shapes.loops;
+  const Tangent& redundancy = explanation.redundancy.loops;
+  lesson.shares = likeliest_from(start, scale, residuals);
+  Tangent cost = Tangent::Zero();
+  for (const auto& residual : residuals) cost += residual.weight * residual.parts;
+  const Component<Tangent> loops{cost.cwiseProduct(shape), redundancy};
+  const Tangent before = log_scales(scale, shape);
+  const Tangent now = told_apart<Pose>(loops).likeliest(before, same_shapes);
+  std::tie(lesson.scale.loops, lesson.shapes.loops) = scale_and_shape(now);
+  lesson.gain += log_scale_peak(now, redundancy) - log_scale_peak(before, redundancy) -
+                 0.5 * redundancy.dot(now - before);
+  const Tangent change = lesson.shapes.loops.cwiseQuotient(shape);
   for (auto& residual : residuals) residual.parts = residual.parts.cwiseQuotient(change);
   const ScaleMixture mixture = expected_mixture(lesson.scale.loops, lesson.shares);
   lesson.shares = weigh(mixture, residuals);
@@ -207,12 +220,16 @@ Lesson<Pose> learn(const Assessment<Pose>& assessment, const Explanation<Pose>& 
                    bool same_shapes) {
   const auto residuals = residuals_of(assessment, explanation);
   const ScaleShares& shares = explanation.shares;
-  Lesson<Pose> best = lesson_from({1.0, shares}, explanation, residuals, same_shapes);
-  for (const ScaleShift& other : {wider_most(shares), sharper_most(shares)}) {
-    const auto lesson = lesson_from(other, explanation, residuals, same_shapes);
+  const double before =
+      log_likelihood(expected_mixture(explanation.scale.loops, shares), residuals);
+  const Lesson<Pose> odometry = of_odometry(explanation, same_shapes);
+  Lesson<Pose> best = odometry;
+  for (const ScaleShift& start :
+       {ScaleShift{1.0, shares}, wider_most(shares), sharper_most(shares)}) {
+    auto lesson = of_loops(start, explanation, residuals, same_shapes, odometry);
+    lesson.gain -= before;
     if (lesson.gain > best.gain) best = lesson;
   }
-  best.gain -= log_likelihood(expected_mixture(explanation.scale.loops, shares), residuals);
   return best;
 }
 

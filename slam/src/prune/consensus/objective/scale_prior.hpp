@@ -27,6 +27,15 @@ Tangent log_scales(double scale, const Tangent& shape) {
   return std::log(scale) + shape.array().log();
 }
 
+/// Of the logs, with one for each coordinate: (s^2 (I + 11'))^-1 = (I - 11' / (1 + d)) / s^2.
+template <class Tangent>
+auto prior_precision() {
+  constexpr int kSize = Tangent::SizeAtCompileTime;
+  using Matrix = Eigen::Matrix<double, kSize, kSize>;
+  const Matrix shared = Matrix::Constant(1.0 / (1.0 + kSize));
+  return Matrix((Matrix::Identity() - shared) / (kScaleDeviation * kScaleDeviation));
+}
+
 /// log of the prior's density at these, times the width of the posterior's peak, where measurements
 /// of this redundancy tell: their likelihood has curvature redundancy / 2 (Laplace).
 template <class Tangent>
@@ -37,12 +46,10 @@ double log_scale_peak(const Tangent& logs, const Tangent& redundancy) {
     return -0.5 * precision * logs[0] * logs[0] +
            std::log(scale_deviation(redundancy.sum()) / kScaleDeviation);
   }
-  // (I + 11')^-1 = I - 11' / (1 + d)
   const double with_own = 1.0 + static_cast<double>(logs.size());
-  const double squares = logs.squaredNorm() - logs.sum() * logs.sum() / with_own;
   const Tangent curvature = 1.0 + 0.5 / precision * redundancy.array();
-  return -0.5 * (precision * squares + curvature.array().log().sum() + std::log(with_own) +
-                 std::log(1.0 - curvature.cwiseInverse().sum() / with_own));
+  return -0.5 * (logs.dot(prior_precision<Tangent>() * logs) + curvature.array().log().sum() +
+                 std::log(with_own) + std::log(1.0 - curvature.cwiseInverse().sum() / with_own));
 }
 
 }  // namespace isotherm::slam::detail
