@@ -50,7 +50,8 @@ CONSTANTS = [
     Constant("kLeastAspect", "0.05", "thickness of a flat map, which false loops leave",
              (0.01, 0.3)),
     Constant("kFewLoops", "5", "loops of which none is pruned if there are fewer", (0, 20)),
-    Constant("kBetter", "0.1", "nats by which a move must be better", (0.01, 1)),
+    Constant("kLeastSample", "200", "loops that a sample holds at least", (20, 1e9)),
+    Constant("kBetter", "1", "nats by which a move must be better", (0.1, 3)),
     Constant("kPatience", "8", "moves that may find nothing better", (3, 20)),
     Constant("kMoreTelling", "2", "times as many loops tell scales anew", (1, 1000)),
     Constant("kMostExpectedFalse", "0.5", "loops of a batch that may be expected false", (0.1, 5)),
@@ -60,8 +61,6 @@ CONSTANTS = [
              (0.001, 0.1)),
     Constant("kSameWeight", "0.05", "change of a log weight that matters", (0.005, 0.5)),
     Constant("kNodes", "4", "nodes to either side, for an integral", (0, 8)),
-    Constant("kHopeless", "50",
-             "log odds against, by a bound, beyond which no covariance is solved for", (20, 200)),
 ]
 STARTS = ["as stated", "odometry x 100", "loops x 0.01", "both x 0.01"]
 FLAGS = {"window 5": ["--window", 5], "window 80": ["--window", 80],

@@ -6,6 +6,7 @@
 
 #include "isotherm/slam/online/online_consensus.hpp"
 #include "prune/consensus/climb/climb.hpp"
+#include "prune/consensus/estimate/vertex_poses.hpp"
 #include "prune/set_aside.hpp"
 
 namespace isotherm::slam::detail {
@@ -51,24 +52,17 @@ class Snapshot {
 
   /// The node that a vertex is known by, and how odometry leads from there to it, with the scales
   /// that were learnt; none where nothing that is judged touches the vertex's chain.
-  struct Anchor {
-    Index node = 0;
-    UncertainPose<Pose> path;
-  };
-  std::optional<Anchor> anchor(Index vertex) const;
+  std::optional<Anchor<Pose>> anchor(Index vertex) const;
 
   /// Where the best explanation has a vertex; none where anchor() has none.
   std::optional<Pose> pose(Index vertex) const;
 
  private:
-  using Standpoint = std::pair<Explanation<Pose>, typename Assessment<Pose>::Findings>;
-
   void prepare(const Pace& pace);
   Explanation<Pose> go_on_from(const Snapshot& other, bool everywhere);
-  void climb_from_nothing(bool everywhere);
+  void climb_from_nothing(bool everywhere, const Pace& pace);
   bool add(const Explanation<Pose>& next);
-  Standpoint carry(const Snapshot& other) const;
-  void carry_layout(const Snapshot& other, typename Estimate<Pose>::Layout& layout) const;
+  Standpoint<Pose> carry(const Snapshot& other) const;
   void judge();
 
   PoseGraph<Pose> graph_;

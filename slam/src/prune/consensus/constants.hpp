@@ -40,8 +40,13 @@ inline constexpr std::size_t kFewLoops = 5;
 inline constexpr std::array<std::array<double, 2>, 4> kStarts = {
     {{1.0, 1.0}, {100.0, 1.0}, {1.0, 0.01}, {0.01, 0.01}}};
 
-/// Nats by which an explanation must be better to go on: odds that nobody would act on.
-inline constexpr double kBetter = 0.1;
+/// Loops in a sample at least: half of them false, the rest tell the log of a scale to within .1.
+/// Of fewer all are looked at at once.
+inline constexpr std::size_t kLeastSample = 200;
+
+/// Nats by which an explanation must be better to go on: less is "not worth more than a bare
+/// mention" (Kass and Raftery, Bayes Factors, 1995, table of section 3.2).
+inline constexpr double kBetter = 1.0;
 
 /// Moves in a row that may find nothing better, or nothing that would lead in as many to the
 /// highest peak of earlier climbs.
@@ -53,7 +58,7 @@ inline constexpr std::size_t kMoreTelling = 2;
 /// Groups accepted at once are all true with even odds at least,
 inline constexpr double kMostExpectedFalse = 0.5;
 /// or false as rarely as one in so many of those in force, of which each move drops what does not
-/// fit.
+/// fit: where hundreds are near even odds, they are not taken one by one.
 inline constexpr double kFalseShare = 1e-3;
 
 /// Times as many loops as before that are accepted at once: each sharpens what is predicted of the
@@ -71,8 +76,5 @@ inline constexpr double kSameWeight = 0.05;
 /// Nodes on either side for the integral over the log of a factor: to 2.8 deviations, by the
 /// trapezoidal rule.
 inline constexpr int kNodes = 4;
-
-/// Log odds against, by a bound, beyond which a loop's covariance is not solved for.
-inline constexpr double kHopeless = 50.0;
 
 }  // namespace isotherm::slam::detail

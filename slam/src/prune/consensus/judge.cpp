@@ -1,32 +1,13 @@
 #include "prune/consensus/judge.hpp"
 
 #include <algorithm>
-#include <functional>
-#include <utility>
-#include <vector>
 
 #include "graph/candidate_verdicts.hpp"
 #include "prune/consensus/climb/climb.hpp"
 #include "prune/consensus/climb/report.hpp"
-#include "prune/consensus/climb/starts.hpp"
+#include "prune/consensus/climb/search.hpp"
 
 namespace isotherm::slam {
-namespace {
-
-using detail::Explanation;
-
-// Nothing accepted, and what the climbs found; the best first.
-template <class Pose>
-std::vector<Explanation<Pose>> explanations(detail::Climb<Pose>& climb, bool calibrate) {
-  std::vector<Explanation<Pose>> found;
-  detail::climb_from_each_start(calibrate,
-                                [&](const auto& start) { found.push_back(climb.from(start)); });
-  found.push_back(climb.nothing());
-  std::ranges::stable_sort(found, std::greater{}, &Explanation<Pose>::evidence);
-  return found;
-}
-
-}  // namespace
 
 template <class Pose>
 bool detail::has_information(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
@@ -45,7 +26,7 @@ ConsensusResult detail::judge_by_evidence(const PoseGraph<Pose>& graph, const Ed
   if (roles.candidates.empty()) return result;
   const detail::Objective<Pose> objective(graph, roles, options.window, options.calibrate);
   detail::Climb<Pose> climb(objective, options, run.progress);
-  const auto found = explanations(climb, options.calibrate);
+  const auto found = detail::search(objective, options, run.progress, {}, climb);
   result.moves = climb.moves();
   result.settled = climb.settled();
   detail::report(found, options.significance, result);

@@ -172,51 +172,34 @@ double Assessment<Pose>::uncertainty(const Explanation<Pose>& now, Index loop) c
   return left >= 0.0 ? std::min(left, most) : most;
 }
 
-// Accepting loops only ever sharpens predictions, so that covariances with fewer of them at the
-// same scale are upper bounds.
-template <class Pose>
-bool Assessment<Pose>::bounds(const Explanation<Pose>& now) const {
-  if (found_.held.empty() || found_.held_scale != now.scale.odometry) return false;
-  for (std::size_t k = 0; k < now.accepted.size(); ++k) {
-    if (found_.held[k] > 0.0 && !now.accepted[k]) return false;
-  }
-  return true;
-}
-
 // Covariances of the loops whose ends are joined. Where nothing is accepted and odometry does not
-// meet itself they have been composed already; those of loops that were hopeless, and are under the
-// best within their bound, stay.
+// meet itself they have been composed already.
 template <class Pose>
 void Assessment<Pose>::predict(Explanation<Pose>& now) {
   const bool alone = std::ranges::count(now.accepted, true) == 0 && found_.graph->is_forest();
-  const bool bounded = bounds(now) && !now.standings.empty();
   now.standings.resize(now.accepted.size());
   std::vector<Index> solved;
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
     const auto loop = static_cast<Index>(k);
-    Standing& standing = now.standings[k];
-    if (bounded && !now.accepted[k] && standing.connected() && standing.evidence < -kHopeless) {
-      standing = other_standing(now, loop, true);
-      if (standing.evidence < -kHopeless) continue;
-    }
     const auto [first, second] = estimate_.parts(graph().loops[k]);
-    if (!alone && first == second) solved.push_back(loop);
-    found_.covariances[k] = odometry_says(loop, now.scale.odometry);
-    standing.evidence = 0.0;
+    if (!alone && first == second) {
+      solved.push_back(loop);
+    } else {
+      found_.covariances[k] = odometry_says(loop, now.scale.odometry);
+    }
   }
   solve(now, solved, !alone);
   found_.held.assign(now.accepted.size(), 0.0);
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
     if (now.accepted[k]) found_.held[k] = now.weights[k] / now.scale.loops;
   }
-  found_.held_scale = now.scale.odometry;
 }
 
 // The covariance of a loop's residual where nothing but odometry is known.
 template <class Pose>
 typename Pose::Matrix Assessment<Pose>::odometry_says(Index loop, double scale) const {
   const auto J = residual_jacobian<Pose>(estimate_.residual(graph().loops[loop]));
-  return scale * J * graph().odometry_covariance[loop] * J.transpose();
+  return scale * J * graph().odometry_covariance(graph().loops[loop]) * J.transpose();
 }
 
 // Covariances of these loops, and unless odometry is on its own what it tells of its accuracy.
@@ -244,11 +227,7 @@ void Assessment<Pose>::weigh(Explanation<Pose>& now) {
   find_redundancy(now);
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
     const auto loop = static_cast<Index>(k);
-    if (now.accepted[k]) {
-      now.standings[k] = accepted_standing(now, loop);
-    } else if (now.standings[k].evidence >= -kHopeless) {
-      now.standings[k] = other_standing(now, loop, false);
-    }
+    now.standings[k] = now.accepted[k] ? accepted_standing(now, loop) : other_standing(now, loop);
   }
 }
 
@@ -287,15 +266,13 @@ Standing Assessment<Pose>::accepted_standing(const Explanation<Pose>& now, Index
 }
 
 template <class Pose>
-Standing Assessment<Pose>::other_standing(const Explanation<Pose>& now, Index loop,
-                                          bool best) const {
+Standing Assessment<Pose>::other_standing(const Explanation<Pose>& now, Index loop) const {
   const auto& link = graph().loops[loop];
   Standing standing{.parts = estimate_.parts(link)};
   double density = -objective_.log_volume();
   if (standing.connected()) {
-    auto prediction =
+    const auto prediction =
         detail::predict<Pose>(estimate_.residual(link), found_.covariances[loop], link.covariance);
-    if (best) prediction = at_best<Pose>(prediction, found_.mixture.scale);
     const auto gain =
         loop_gain<Pose>(prediction, found_.mixture, objective_.scale_deviation(now.redundancy));
     standing.chi2 = gain.chi2;

@@ -52,7 +52,6 @@ class Assessment {
     std::vector<Matrix> covariances;     // of residuals, one a loop; with it where it is accepted
     // Factors on the information of the loops that the covariances are given; none where empty.
     std::vector<double> held;
-    double held_scale = 0.0;  // of odometry
   };
   const Findings& findings() const noexcept { return found_; }
 
@@ -84,14 +83,13 @@ class Assessment {
   bool reweigh(Explanation<Pose>& now, bool anyway);
   double uncertainty(const Explanation<Pose>& now, Index loop) const;
   void weigh_new(Explanation<Pose>& now);
-  bool bounds(const Explanation<Pose>& now) const;
   void predict(Explanation<Pose>& now);
   Matrix odometry_says(Index loop, double scale) const;
   void solve(Explanation<Pose>& now, const std::vector<Index>& loops, bool odometry);
   void weigh(Explanation<Pose>& now);
   void find_redundancy(Explanation<Pose>& now) const;
   Standing accepted_standing(const Explanation<Pose>& now, Index loop) const;
-  Standing other_standing(const Explanation<Pose>& now, Index loop, bool best) const;
+  Standing other_standing(const Explanation<Pose>& now, Index loop) const;
   void add_prior(Explanation<Pose>& now) const;
 
   const Objective<Pose>& objective_;

@@ -41,6 +41,19 @@ Climb<Pose>::Climb(const Objective<Pose>& objective, const ConsensusOptions& opt
 template <class Pose>
 Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
   start(scale);
+  return climb();
+}
+
+// Learns no scales before it has accepted what they say.
+template <class Pose>
+Explanation<Pose> Climb<Pose>::from(Standpoint<Pose> standpoint) {
+  stand_on(std::move(standpoint));
+  learnt_from_ = accepted_count();
+  return climb();
+}
+
+template <class Pose>
+Explanation<Pose> Climb<Pose>::climb() {
   double before = best_.evidence;
   do {
     before = best_.evidence;
@@ -61,16 +74,8 @@ const Explanation<Pose>& Climb<Pose>::lead_to(const Explanation<Pose>& peak) {
 }
 
 template <class Pose>
-Explanation<Pose> Climb<Pose>::resume(Explanation<Pose> before,
-                                      typename Assessment<Pose>::Findings found) {
-  now_ = std::move(before);
-  dropped_.assign(now_.accepted.size(), false);
-  learnt_from_ = 0;
-  assessment_.restore(now_, std::move(found));
-  assessment_.assess(now_);
-  failed_ = {};
-  predict_runs();
-  best_ = now_;
+Explanation<Pose> Climb<Pose>::resume(Standpoint<Pose> standpoint) {
+  stand_on(std::move(standpoint));
   int vain = 0;
   for (int round = 0; round < options_.max_rounds && vain < kPatience; ++round) {
     tell_progress();
@@ -159,13 +164,26 @@ void Climb<Pose>::start(const CovarianceScale& scale) {
   now_ = {.accepted = std::vector<bool>(loops, false), .scale = scale};
   now_.shares.loops[0] = static_cast<double>(loops);
   now_.weights.assign(loops, 1.0);
-  dropped_.assign(loops, false);
+  assessment_.start_over();
+  begin();
+  if (scale == CovarianceScale{}) nothing_ = now_;
+}
+
+template <class Pose>
+void Climb<Pose>::stand_on(Standpoint<Pose> standpoint) {
+  now_ = std::move(standpoint.explanation);
+  assessment_.restore(now_, std::move(standpoint.found));
+  begin();
+}
+
+template <class Pose>
+void Climb<Pose>::begin() {
+  dropped_.assign(now_.accepted.size(), false);
   learnt_from_ = 0;
+  failed_ = {};
   longest_ = std::max(longest_, passed_.size() - began_);
   began_ = passed_.size();
-  assessment_.start_over();
   assessment_.assess(now_);
-  if (scale == CovarianceScale{}) nothing_ = now_;
   predict_runs();
   best_ = now_;
 }

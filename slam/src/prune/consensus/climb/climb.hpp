@@ -10,6 +10,7 @@
 #include "prune/consensus/climb/assessment.hpp"
 #include "prune/consensus/climb/groups.hpp"
 #include "prune/consensus/climb/learn.hpp"
+#include "prune/consensus/climb/standpoint.hpp"
 #include "prune/consensus/constants.hpp"
 
 namespace isotherm::slam::detail {
@@ -31,9 +32,12 @@ class Climb {
   /// explanation on the way.
   Explanation<Pose> from(const CovarianceScale& start);
 
-  /// Goes on from `before`, where `found` was found: loops are accepted and dropped and scales
-  /// learnt while that helps, without looking for other scales. Later climbs know the peak.
-  Explanation<Pose> resume(Explanation<Pose> before, typename Assessment<Pose>::Findings found);
+  /// The same from there.
+  Explanation<Pose> from(Standpoint<Pose> standpoint);
+
+  /// Goes on from there: loops are accepted and dropped and scales learnt while that helps, without
+  /// looking for other scales. Later climbs know the peak.
+  Explanation<Pose> resume(Standpoint<Pose> standpoint);
 
   /// See Assessment.
   void hold_nearness(bool held) { assessment_.hold_nearness(held); }
@@ -69,6 +73,9 @@ class Climb {
   };
 
   void start(const CovarianceScale& scale);
+  void stand_on(Standpoint<Pose> standpoint);
+  void begin();
+  Explanation<Pose> climb();
   const Explanation<Pose>* peak_ahead(bool learnt);
   const Explanation<Pose>& lead_to(const Explanation<Pose>& peak);
   bool is_here(const Passed& passed) const;

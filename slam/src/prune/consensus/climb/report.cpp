@@ -11,21 +11,16 @@
 namespace isotherm::slam::detail {
 namespace {
 
-// Each loop's log odds by all explanations, by their evidence; the best is first. One at about the
-// scale of a better one that keeps the same loops is the same peak.
+// Each loop's log odds by all explanations, by their evidence; the best is first.
 template <class Pose>
 std::vector<double> mean_log_odds(const std::vector<Explanation<Pose>>& found) {
   constexpr double kNone = -std::numeric_limits<double>::infinity();
   std::vector<double> log_true(found.front().standings.size(), kNone);
   std::vector<double> log_false = log_true;
-  for (auto at = found.begin(); at != found.end(); ++at) {
-    const double log_weight = at->evidence - found.front().evidence;
-    const bool same = std::any_of(found.begin(), at, [&](const auto& better) {
-      return better.accepted == at->accepted && about_the_same(better.scale, at->scale);
-    });
-    if (same) continue;
+  for (const auto& one : found) {
+    const double log_weight = one.evidence - found.front().evidence;
     for (std::size_t k = 0; k < log_true.size(); ++k) {
-      const double log_odds = at->standings[k].log_odds;
+      const double log_odds = one.standings[k].log_odds;
       log_true[k] = log_sum(log_true[k], log_weight - log_sum(0.0, -log_odds));
       log_false[k] = log_sum(log_false[k], log_weight - log_sum(0.0, log_odds));
     }

@@ -15,8 +15,8 @@ spectral::Verdict verdict_of(bool accepted, double log_odds, double decisive, bo
 /// Where the verdict on a loop comes from: accepted, rejected or unconnected.
 const char* stage_of(bool accepted, bool connected);
 
-/// Turns explanations of the same candidates, the best first, into verdicts, of which `result` has
-/// one a candidate, and into all else but conflicts and moves.
+/// Turns explanations of the same candidates, the best first and each once, into verdicts, of which
+/// `result` has one a candidate, and into all else but conflicts and moves.
 template <class Pose>
 void report(const std::vector<Explanation<Pose>>& found, double significance,
             ConsensusResult& result);

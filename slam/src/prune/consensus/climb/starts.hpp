@@ -6,16 +6,21 @@
 
 namespace isotherm::slam::detail {
 
-/// Calls `climb_from` with each of kStarts in turn, and without `calibrate` with the file's alone.
 /// Scales at which the normal equations break down explain nothing.
+template <class Function, class Start>
+void unless_it_breaks_down(Function&& climb_from, const Start& start) {
+  try {
+    climb_from(start);
+  } catch (const NumericalError&) {
+    return;
+  }
+}
+
+/// Calls `climb_from` with each of kStarts in turn, and without `calibrate` with the file's alone.
 template <class Function>
 void climb_from_each_start(bool calibrate, Function&& climb_from) {
   for (const auto& [odometry, loops] : kStarts) {
-    try {
-      climb_from(CovarianceScale{odometry, loops});
-    } catch (const NumericalError&) {
-      continue;
-    }
+    unless_it_breaks_down(climb_from, CovarianceScale{odometry, loops});
     if (!calibrate) break;
   }
 }

@@ -40,6 +40,12 @@ Link<Pose> link(const Constraint<Pose>& constraint, const std::vector<Index>& no
 }  // namespace
 
 template <class Pose>
+typename Pose::Matrix ReducedGraph<Pose>::odometry_covariance(const Link<Pose>& loop) const {
+  if (!same_chain(loop)) return kUnknownVariance * Pose::Matrix::Identity();
+  return odometry.relative(vertex[loop.a], vertex[loop.b]).covariance;
+}
+
+template <class Pose>
 ReducedGraph<Pose> reduce(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
   std::vector<bool> touched(graph.ids.size(), false);
   const auto others = trusted_beside_chains(graph, roles);
@@ -74,17 +80,12 @@ ReducedGraph<Pose> reduce(const PoseGraph<Pose>& graph, const EdgeRoles& roles) 
       reduced.steps.push_back(link(graph.constraints[k], node));
     }
   }
-  for (const Index k : roles.candidates) {
-    const auto& constraint = graph.constraints[k];
-    reduced.loops.push_back(link(constraint, node));
-    reduced.odometry_covariance.push_back(
-        reduced.same_chain(reduced.loops.back())
-            ? odometry.relative(constraint.from, constraint.to).covariance
-            : kUnknownVariance * Pose::Matrix::Identity());
-  }
+  for (const Index k : roles.candidates) reduced.loops.push_back(link(graph.constraints[k], node));
   return reduced;
 }
 
+template struct ReducedGraph<Pose2>;
+template struct ReducedGraph<Pose3>;
 template ReducedGraph<Pose2> reduce(const PoseGraph<Pose2>&, const EdgeRoles&);
 template ReducedGraph<Pose3> reduce(const PoseGraph<Pose3>&, const EdgeRoles&);
 

@@ -32,12 +32,13 @@ struct ReducedGraph {
   std::vector<Link<Pose>> steps;  ///< contracted odometry, then other trusted edges
   std::size_t contracted = 0;     ///< of the steps, along chains: the first
   std::vector<Link<Pose>> loops;  ///< one a candidate, in order
-  /// Loops: covariance of T_a^-1 T_b under odometry alone, as a perturbation on
-  /// the right; beyond every map where the ends are on different chains.
-  std::vector<typename Pose::Matrix> odometry_covariance;
 
   Index node_count() const noexcept { return static_cast<Index>(vertex.size()); }
   bool same_chain(const Link<Pose>& loop) const { return chain[loop.a] == chain[loop.b]; }
+
+  /// Covariance of T_a^-1 T_b under odometry alone, as a perturbation on the right; beyond every
+  /// map where the ends are on different chains.
+  typename Pose::Matrix odometry_covariance(const Link<Pose>& loop) const;
 
   /// Vertices of the full graph between the ends of a loop.
   Index span(Index loop) const { return std::abs(vertex[loops[loop].a] - vertex[loops[loop].b]); }

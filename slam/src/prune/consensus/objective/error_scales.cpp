@@ -68,6 +68,9 @@ ScaleMixture expected_mixture(double scale, const ScaleShares& shares) {
     mixture.log_share[2] = std::log((expected[2] + expected[3]) / all);
     mixture.log_share[3] = kNever;
   }
+  for (std::size_t j = 0; j < kScaleCount; ++j) {
+    mixture.log_relative[j] = std::log(mixture.relative[j]);
+  }
   return mixture;
 }
 
@@ -76,13 +79,18 @@ double ScaleMixture::share_of_worse() const { return 1.0 - std::exp(log_share.fr
 ErrorScale error_scale(const ScaleMixture& mixture, const ByScale& log_density, double dof) {
   const double most = *std::ranges::max_element(log_density);
   double sum = 0.0;
-  for (const double value : log_density) sum += std::exp(value - most);
   ErrorScale result{.weight = 0.0};
   for (std::size_t j = 0; j < kScaleCount; ++j) {
-    const double p = std::exp(log_density[j] - most) / sum;
-    result.probability[j] = p;
+    result.probability[j] = mixture.has(j) ? std::exp(log_density[j] - most) : 0.0;
+    sum += result.probability[j];
+  }
+  const double log_all = most + std::log(sum);
+  for (std::size_t j = 0; j < kScaleCount; ++j) {
+    double& p = result.probability[j];
+    p /= sum;
     result.weight += p / mixture.relative[j];
-    if (p > 0.0) result.evidence -= p * (0.5 * dof * std::log(mixture.relative[j]) + std::log(p));
+    if (p == 0.0) continue;
+    result.evidence -= p * (0.5 * dof * mixture.log_relative[j] + log_density[j] - log_all);
   }
   return result;
 }
@@ -90,8 +98,8 @@ ErrorScale error_scale(const ScaleMixture& mixture, const ByScale& log_density, 
 ErrorScale error_scale(const ScaleMixture& mixture, double chi2, double dof) {
   ByScale log_density;
   for (std::size_t j = 0; j < kScaleCount; ++j) {
-    log_density[j] = mixture.log_share[j] -
-                     0.5 * (dof * std::log(mixture.relative[j]) + chi2 / mixture.relative[j]);
+    log_density[j] =
+        mixture.log_share[j] - 0.5 * (dof * mixture.log_relative[j] + chi2 / mixture.relative[j]);
   }
   return error_scale(mixture, log_density, dof);
 }

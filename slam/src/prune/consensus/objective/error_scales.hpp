@@ -54,6 +54,7 @@ ScaleShift all_as_worst(const ScaleShares& shares);
 struct ScaleMixture {
   double scale = 1.0;  ///< on the stated covariance, of most
   ByScale relative{};  ///< scales against that of most, ascending
+  ByScale log_relative{};
   ByScale log_share{};
 
   /// Whether any can be of this scale.

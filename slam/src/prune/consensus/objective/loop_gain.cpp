@@ -83,13 +83,6 @@ Prediction<Pose> predict_without(const typename Pose::Tangent& r, const typename
 }
 
 template <class Pose>
-Prediction<Pose> at_best(Prediction<Pose> prediction, double own) {
-  const typename Pose::Tangent likeliest = (prediction.r.array().square() - own).max(0.0);
-  prediction.variance = prediction.variance.cwiseMin(likeliest);
-  return prediction;
-}
-
-template <class Pose>
 LoopGain loop_gain(const Prediction<Pose>& prediction, const ScaleMixture& mixture,
                    const CovarianceScale& deviation) {
   const auto& [r, variance, log_sigma] = prediction;
@@ -123,8 +116,6 @@ template Prediction<Pose2> predict_without(const Pose2::Tangent&, const Pose2::M
                                            const Pose2::Matrix&, double);
 template Prediction<Pose3> predict_without(const Pose3::Tangent&, const Pose3::Matrix&,
                                            const Pose3::Matrix&, double);
-template Prediction<Pose2> at_best(Prediction<Pose2>, double);
-template Prediction<Pose3> at_best(Prediction<Pose3>, double);
 template LoopGain loop_gain(const Prediction<Pose2>&, const ScaleMixture&, const CovarianceScale&);
 template LoopGain loop_gain(const Prediction<Pose3>&, const ScaleMixture&, const CovarianceScale&);
 

@@ -25,11 +25,6 @@ template <class Pose>
 Prediction<Pose> predict_without(const typename Pose::Tangent& r, const typename Pose::Matrix& P,
                                  const typename Pose::Matrix& Sigma, double precision);
 
-/// The same with the variances, up to those given, under which a loop with an error of its own of
-/// variance `own` is likeliest: no covariance below that one makes it likelier.
-template <class Pose>
-Prediction<Pose> at_best(Prediction<Pose> prediction, double own);
-
 /// What a loop adds to the log evidence.
 struct LoopGain {
   double log_density = 0.0;  ///< log p(z | the others)

@@ -28,12 +28,20 @@ Objective<Pose>::Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
       stated_(scaled({})),
       near_(stated_.reduced),
       runs_(stated_.reduced, window),
+      window_(window),
       calibrate_(calibrate) {
   const MapVolume<Pose> map(stated_.reduced.poses);
   log_volume_ = 0.5 * (map.variance().array().log().sum() + Pose::kDof * kLog2Pi);
   for (const auto& loop : stated_.reduced.loops) {
     log_sigma_.push_back(log_determinant(Eigen::LLT<typename Pose::Matrix>(loop.covariance)));
   }
+}
+
+template <class Pose>
+Objective<Pose> Objective<Pose>::of(const std::vector<Index>& loops) const {
+  EdgeRoles roles{.odometry = roles_.odometry, .candidates = {}};
+  for (const Index k : loops) roles.candidates.push_back(roles_.candidates[k]);
+  return Objective(graph_, roles, window_, calibrate_);
 }
 
 template <class Pose>

@@ -66,6 +66,9 @@ class Objective {
   Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles, Index window,
             bool calibrate = true);
 
+  /// The same of some of its loops, by their numbers, ascending.
+  Objective of(const std::vector<Index>& loops) const;
+
   /// As stated.
   const ScaledGraph<Pose>& stated() const noexcept { return stated_; }
   ScaledGraph<Pose> scaled(const Shapes<Pose>& shapes) const {
@@ -118,6 +121,7 @@ class Objective {
   ScaledGraph<Pose> stated_;
   NearDensity<Pose> near_;
   Runs<Pose> runs_;
+  Index window_;
   bool calibrate_;
   double log_volume_;
   std::vector<double> log_sigma_;  // log|Sigma| of each loop

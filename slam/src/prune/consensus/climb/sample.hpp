@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "prune/consensus/estimate/reduced_graph.hpp"
+
+namespace isotherm::slam::detail {
+
+/// Numbers of the loops, ascending, that were closed in every kBatchGrowth-th stretch of the way:
+/// where one lies there, so do others within `window` vertices, so that runs stay together.
+template <class Pose>
+std::vector<Index> sample(const ReducedGraph<Pose>& graph, Index window);
+
+}  // namespace isotherm::slam::detail

@@ -1,0 +1,92 @@
+#include "prune/consensus/climb/search.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+
+#include "prune/consensus/climb/sample.hpp"
+#include "prune/consensus/climb/starts.hpp"
+#include "prune/consensus/objective/log_odds.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+template <class Pose>
+std::size_t accepted_by(const Explanation<Pose>& explanation) {
+  return static_cast<std::size_t>(std::ranges::count(explanation.accepted, true));
+}
+
+// Best first. One at about the scale of a better one that keeps the same loops is the same peak.
+template <class Pose>
+void keep_peaks(std::vector<Explanation<Pose>>& found) {
+  std::ranges::stable_sort(found, std::greater{}, &Explanation<Pose>::evidence);
+  std::vector<Explanation<Pose>> peaks;
+  for (auto& one : found) {
+    const bool same = std::ranges::any_of(peaks, [&](const auto& better) {
+      return better.accepted == one.accepted && about_the_same(better.scale, one.scale);
+    });
+    if (!same) peaks.push_back(std::move(one));
+  }
+  found = std::move(peaks);
+}
+
+// As numbers of a sample say which loops of all those are.
+KnownBefore known_of(const std::vector<Index>& sampled, std::size_t all) {
+  KnownBefore known{.loops = {}, .vertex = [](Index vertex) { return std::optional(vertex); }};
+  known.loops.resize(all);
+  for (std::size_t k = 0; k < sampled.size(); ++k) known.loops[sampled[k]] = static_cast<Index>(k);
+  return known;
+}
+
+// Where the climbs on a sample of the loops ended; none of few loops, or where few are true: these
+// tell nothing of scales.
+template <class Pose>
+std::vector<Standpoint<Pose>> standpoints(const Objective<Pose>& objective,
+                                          const ConsensusOptions& options,
+                                          const ProgressCallback& progress, const Pace& pace) {
+  const auto& all = objective.stated().reduced;
+  const auto sampled = sample(all, options.window);
+  std::vector<Standpoint<Pose>> standpoints;
+  if (sampled.size() < kLeastSample) return standpoints;
+  const Objective<Pose> part = objective.of(sampled);
+  Climb<Pose> climb(part, options, progress, pace);
+  const auto found = search(part, options, progress, pace, climb);
+  if (accepted_by(found.front()) < kFewLoops) return standpoints;
+  const double least = found.front().evidence - log_odds_of(1.0 - options.significance);
+  const KnownBefore known = known_of(sampled, all.loops.size());
+  for (const auto& peak : found) {
+    if (peak.evidence < least) break;
+    climb.stand_at(peak);
+    standpoints.push_back(carry(peak, climb.assessment().findings(), objective, known));
+  }
+  return standpoints;
+}
+
+}  // namespace
+
+template <class Pose>
+std::vector<Explanation<Pose>> search(const Objective<Pose>& objective,
+                                      const ConsensusOptions& options,
+                                      const ProgressCallback& progress, const Pace& pace,
+                                      Climb<Pose>& climb) {
+  std::vector<Explanation<Pose>> found;
+  const auto try_from = [&](const auto& start) { found.push_back(climb.from(start)); };
+  for (const auto& standpoint : standpoints(objective, options, progress, pace)) {
+    unless_it_breaks_down(try_from, standpoint);
+  }
+  if (found.empty()) {
+    climb_from_each_start(options.calibrate, try_from);
+    found.push_back(climb.nothing());
+  }
+  keep_peaks(found);
+  return found;
+}
+
+template std::vector<Explanation<Pose2>> search(const Objective<Pose2>&, const ConsensusOptions&,
+                                                const ProgressCallback&, const Pace&,
+                                                Climb<Pose2>&);
+template std::vector<Explanation<Pose3>> search(const Objective<Pose3>&, const ConsensusOptions&,
+                                                const ProgressCallback&, const Pace&,
+                                                Climb<Pose3>&);
+
+}  // namespace isotherm::slam::detail

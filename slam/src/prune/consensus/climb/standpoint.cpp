@@ -1,0 +1,78 @@
+#include "prune/consensus/climb/standpoint.hpp"
+
+#include <algorithm>
+#include <memory>
+
+#include "prune/consensus/estimate/vertex_poses.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+template <class Pose>
+using Layout = typename Estimate<Pose>::Layout;
+
+// Of nodes that have none, by odometry from the next ones on their chain, if these have.
+template <class Pose>
+void follow_odometry(const ReducedGraph<Pose>& graph, Layout<Pose>& layout) {
+  const Index count = graph.node_count();
+  const auto follow = [&](Index a, Index neighbour) {
+    if (layout.component[a] >= 0 || layout.component[neighbour] < 0) return;
+    if (graph.chain[a] != graph.chain[neighbour]) return;
+    const auto path = graph.odometry.relative(graph.vertex[neighbour], graph.vertex[a]);
+    layout.poses[a] = layout.poses[neighbour] * path.T;
+    layout.component[a] = layout.component[neighbour];
+  };
+  for (Index a = 1; a < count; ++a) follow(a, a - 1);
+  for (Index a = count - 1; a > 0; --a) follow(a - 1, a);
+}
+
+template <class Pose>
+Layout<Pose> carry_layout(const Layout<Pose>& before, const ReducedGraph<Pose>& from,
+                          const ReducedGraph<Pose>& to, const KnownBefore& known) {
+  const Index count = to.node_count();
+  Layout<Pose> layout{to.poses, std::vector<Index>(count, -1)};
+  for (Index a = 0; a < count; ++a) {
+    const auto vertex = known.vertex(to.vertex[a]);
+    const auto anchor = vertex ? nearest_node(from, *vertex) : std::nullopt;
+    if (!anchor) continue;
+    layout.poses[a] = *pose_of(from, before.poses, *vertex);
+    layout.component[a] = before.component[anchor->node];
+  }
+  follow_odometry(to, layout);
+  const auto& parts = before.component;
+  const Index first_new = parts.empty() ? 0 : 1 + *std::ranges::max_element(parts);
+  for (Index a = 0; a < count; ++a) {
+    if (layout.component[a] < 0) layout.component[a] = first_new + to.chain[a];
+  }
+  return layout;
+}
+
+}  // namespace
+
+template <class Pose>
+Standpoint<Pose> carry(const Explanation<Pose>& before,
+                       const typename Assessment<Pose>::Findings& found,
+                       const Objective<Pose>& objective, const KnownBefore& known) {
+  Standpoint<Pose> next{{.scale = before.scale, .shapes = before.shapes, .shares = before.shares},
+                        {.shapes = before.shapes, .mixture = found.mixture}};
+  auto& [explanation, findings] = next;
+  explanation.redundancy = before.redundancy;
+  findings.graph = std::make_shared<ScaledGraph<Pose>>(
+      before.shapes == Shapes<Pose>{} ? objective.stated() : objective.scaled(before.shapes));
+  for (const auto& loop : known.loops) {
+    explanation.accepted.push_back(loop && before.accepted[*loop]);
+    explanation.weights.push_back(loop ? before.weights[*loop] : 1.0);
+    findings.held.push_back(loop ? found.held[*loop] : 0.0);
+    findings.covariances.push_back(loop ? found.covariances[*loop] : Pose::Matrix::Zero());
+  }
+  explanation.layout =
+      carry_layout<Pose>(before.layout, found.graph->reduced, findings.graph->reduced, known);
+  return next;
+}
+
+template Standpoint<Pose2> carry(const Explanation<Pose2>&, const Assessment<Pose2>::Findings&,
+                                 const Objective<Pose2>&, const KnownBefore&);
+template Standpoint<Pose3> carry(const Explanation<Pose3>&, const Assessment<Pose3>::Findings&,
+                                 const Objective<Pose3>&, const KnownBefore&);
+
+}  // namespace isotherm::slam::detail

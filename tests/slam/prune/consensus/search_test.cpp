@@ -1,0 +1,145 @@
+#include "prune/consensus/climb/search.hpp"
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "isotherm/slam/simulate/corrupt.hpp"
+#include "isotherm/slam/simulate/simulate.hpp"
+#include "prune/consensus/climb/sample.hpp"
+#include "prune/consensus/climb/starts.hpp"
+#include "slam/loop_graph.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+using isotherm_test::random_loop_graph;
+using isotherm_test::worst_difference;
+
+constexpr Index kWindow = 20;
+const ConsensusOptions kOptions;
+const ProgressCallback kSilent;
+
+template <class Pose>
+Index closed_at(const ReducedGraph<Pose>& graph, Index loop) {
+  return graph.vertex[std::max(graph.loops[loop].a, graph.loops[loop].b)];
+}
+
+// Loops that are closed within a window of a stretch's first are in it.
+TEST(Sample, HasWholeStretchesOfATenthOfTheLoops) {
+  const auto city = simulate_city({.poses = 6000, .measurements = {.loops = 3000}, .seed = 4});
+  const auto graph = reduce(city.graph, edge_roles(city.graph));
+  const auto chosen = sample(graph, kWindow);
+  EXPECT_TRUE(std::ranges::is_sorted(chosen));
+  EXPECT_GT(chosen.size(), 200U);
+  EXPECT_LT(chosen.size(), 400U);
+  const std::set<Index> in(chosen.begin(), chosen.end());
+  ASSERT_EQ(in.size(), chosen.size());
+  std::set<Index> places;
+  for (const Index k : chosen) places.insert(closed_at(graph, k));
+  for (Index k = 0; k < static_cast<Index>(graph.loops.size()); ++k) {
+    EXPECT_EQ(in.contains(k), places.contains(closed_at(graph, k))) << k;
+  }
+  Index began = *places.begin();
+  for (const Index place : places) {
+    if (place <= began + kWindow) continue;
+    EXPECT_GT(place, began + 2 * kWindow);  // stretches that were left out lie between
+    began = place;
+  }
+}
+
+TEST(Sample, OfFewLoopsIsEmpty) {
+  Random random(3);
+  for (const int loops : {0, 1, 3}) {
+    const auto made = random_loop_graph<Pose2>(random, 30, loops, 1.0);
+    EXPECT_TRUE(sample(reduce(made.graph, edge_roles(made.graph)), kWindow).empty());
+  }
+}
+
+template <class Pose>
+class CarryOf : public testing::Test {};
+using Poses = testing::Types<Pose2, Pose3>;
+TYPED_TEST_SUITE(CarryOf, Poses);
+
+TYPED_TEST(CarryOf, OfAllLoopsStandsWhereItStood) {
+  using Pose = TypeParam;
+  Random random(7);
+  const auto made = random_loop_graph<Pose>(random, 80, 40, 1.0);
+  const Objective<Pose> objective(made.graph, edge_roles(made.graph), kWindow);
+  Climb<Pose> climb(objective, kOptions, kSilent);
+  const auto peak = climb.from(CovarianceScale{});
+  climb.stand_at(peak);
+  KnownBefore known{.loops = {}, .vertex = [](Index v) { return std::optional(v); }};
+  for (Index k = 0; k < 40; ++k) known.loops.emplace_back(k);
+  const auto there = carry(peak, climb.assessment().findings(), objective, known);
+  EXPECT_EQ(there.explanation.accepted, peak.accepted);
+  EXPECT_LT(worst_difference(there.explanation.layout.poses, peak.layout.poses), 1e-12);
+  Climb<Pose> other(objective, kOptions, kSilent);
+  EXPECT_NEAR(other.from(there).evidence, peak.evidence, kBetter);
+}
+
+// The second half of the loops is new, and of the vertices that it touches none was a node.
+TYPED_TEST(CarryOf, OfSomeLoopsLeadsToThePeakOfAll) {
+  using Pose = TypeParam;
+  Random random(8);
+  const auto made = random_loop_graph<Pose>(random, 80, 40, 1.0);
+  const Objective<Pose> objective(made.graph, edge_roles(made.graph), kWindow);
+  std::vector<Index> half;
+  for (Index k = 0; k < 20; ++k) half.push_back(k);
+  const auto part = objective.of(half);
+  EXPECT_EQ(part.stated().reduced.loops.size(), half.size());
+  Climb<Pose> few(part, kOptions, kSilent);
+  const auto peak = few.from(CovarianceScale{});
+  few.stand_at(peak);
+  KnownBefore known{.loops = std::vector<std::optional<Index>>(40),
+                    .vertex = [](Index v) { return std::optional(v); }};
+  std::copy(half.begin(), half.end(), known.loops.begin());
+  const auto there = carry(peak, few.assessment().findings(), objective, known);
+  EXPECT_EQ(std::ranges::count(there.explanation.accepted, true), 20);
+  EXPECT_EQ(there.explanation.scale, peak.scale);
+  Climb<Pose> all(objective, kOptions, kSilent);
+  const double from_nothing = all.from(CovarianceScale{}).evidence;
+  EXPECT_NEAR(all.from(there).evidence, from_nothing, 2.0 * kBetter);
+}
+
+// Of loops in thousands, half of them false in groups.
+TEST(Search, OnASampleFindsWhatClimbsFromEachStartFind) {
+  const auto city = simulate_city({.poses = 4000, .measurements = {.loops = 1300}, .seed = 9});
+  const auto bad = corrupt(city.graph, city.truth,
+                           {.type = NoiseType::local_grouped, .fraction = 0.5, .seed = 9});
+  const Objective<Pose2> objective(bad.graph, edge_roles(bad.graph), kWindow);
+  ASSERT_GE(sample(objective.stated().reduced, kWindow).size(), kLeastSample);
+  Climb<Pose2> climb(objective, kOptions, kSilent);
+  const auto found = search(objective, kOptions, kSilent, {}, climb);
+  Climb<Pose2> whole(objective, kOptions, kSilent);
+  double highest = whole.nothing().evidence;
+  std::vector<bool> accepted;
+  climb_from_each_start(true, [&](const auto& start) {
+    const auto peak = whole.from(start);
+    if (peak.evidence > highest) accepted = peak.accepted;
+    highest = std::max(highest, peak.evidence);
+  });
+  EXPECT_GT(found.front().evidence, highest - 2.0 * kBetter);
+  EXPECT_EQ(found.front().accepted, accepted);
+}
+
+TEST(Search, GivesEachPeakOnceTheBestFirst) {
+  Random random(5);
+  const auto made = random_loop_graph<Pose2>(random, 80, 40, 1.0);
+  const Objective<Pose2> objective(made.graph, edge_roles(made.graph), kWindow);
+  Climb<Pose2> climb(objective, kOptions, kSilent);
+  const auto found = search(objective, kOptions, kSilent, {}, climb);
+  ASSERT_GE(found.size(), 2U);  // that all are true, and that none is
+  for (std::size_t i = 1; i < found.size(); ++i) {
+    EXPECT_LE(found[i].evidence, found[i - 1].evidence);
+    for (std::size_t j = 0; j < i; ++j) {
+      EXPECT_FALSE(found[i].accepted == found[j].accepted &&
+                   about_the_same(found[i].scale, found[j].scale));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace isotherm::slam::detail
