@@ -12,6 +12,8 @@
 #include "edges/odds/pair_features.hpp"
 #include "edges/odds/step_counter.hpp"
 #include "edges/odds/two_groups.hpp"
+#include "edges/planar/likely_part.hpp"
+#include "edges/planar/planar_subgraph.hpp"
 #include "edges/planar/plane_features.hpp"
 #include "edges/space/space_features.hpp"
 #include "edges/thin_out.hpp"
@@ -124,13 +126,22 @@ class Rounds {
     return judgement;
   }
 
+  /// What crossings tell, if the graph is nearly planar. The drawing begins with what all else
+  /// says, after a few rounds: most of what is left to settle are edges that crossings tell better.
+  Layout drawn(const Judgement& heat, const WalkAffinityOptions& walks) const {
+    constexpr double kFewRounds = 3.0;
+    if (!has_few_enough_edges(graph_)) return {};
+    const auto guess = weigh(heat, {}, kFewRounds);
+    const auto log_odds = log_odds_of_true(guess.edges, guess.groups.false_count);
+    return {plane_features(graph_, log_odds, thin_out(pairs_), walks), {}};
+  }
+
   /// Weighs all that is measured in the graph that trusts what is more likely true than false, and
   /// again in the graph that this leaves, until probabilities settle.
-  Judgement weigh(Judgement heat, const Layout& layout) const {
-    constexpr double kMostRounds = 10.0;
+  Judgement weigh(Judgement heat, const Layout& layout, double rounds_at_most = 10.0) const {
     constexpr double kMostEdges = 1e6;  // over all rounds: large graphs settle by their size
     const double affordable = kMostEdges / std::max(1.0, static_cast<double>(graph_.edge_count()));
-    const int most_rounds = static_cast<int>(std::clamp(affordable, 1.0, kMostRounds));
+    const int most_rounds = static_cast<int>(std::clamp(affordable, 1.0, rounds_at_most));
     heat.pairs = thin_out(heat.pairs);
     // To begin with, what crosses others vouches for none, and what crosses none is true.
     if (layout.plane) {
@@ -314,13 +325,12 @@ AnnealedHeat anneal_reduced(const WeightedGraph& graph, std::span<const double> 
   const auto first = rounds.first();
   auto heat = rounds.trusting(first);
   const auto walks = rounds.walks(options.rounds - 1, heat.groups.truth);
-  const Layout layout{plane_features(graph, lengths, heat.edges, thin_out(rounds.pairs()), walks),
-                      {}};
+  const auto layout = rounds.drawn(heat, walks);
   const bool in_plane = layout.plane.has_value();
   auto judgement = rounds.weigh(heat, layout);
   if (!in_plane && options.rounds > 2) {
     auto doubting = rounds.doubting(first);
-    auto other = rounds.weigh(doubting, layout);
+    auto other = rounds.weigh(doubting, {});
     if (other.log_evidence > judgement.log_evidence) {
       judgement = std::move(other);
       heat = std::move(doubting);

@@ -31,9 +31,8 @@ class PlanarSearch {
 
   /// The first pass; false if the graph is not nearly planar.
   bool start() {
+    if (!has_few_enough_edges(graph_, options_)) return false;
     const auto count = static_cast<double>(order_.size());
-    const double fitting = (1.0 - options_.most_left_out) * count;
-    if (fitting > 3.0 * vertices_with_edges()) return false;  // Euler
     return add(order_, chosen_, static_cast<std::size_t>(options_.most_left_out * count));
   }
 
@@ -41,7 +40,7 @@ class PlanarSearch {
     bool better = true;
     for (int round = 0; round < options_.rounds && better; ++round) {
       better = false;
-      for (const Index edge : select([this](Index e) { return !chosen_[e]; })) {
+      for (const Index edge : select([this](Index e) { return is_worth_forcing(e); })) {
         if (may_go_on() && !chosen_[edge] && force(edge)) better = true;
       }
       for (const Index edge : in_the_way()) {
@@ -73,12 +72,8 @@ class PlanarSearch {
     std::vector<bool> nearly;  // edges left out that cross one edge at most
   };
 
-  double vertices_with_edges() const {
-    double count = 0.0;
-    for (Index v = 0; v < graph_.vertex_count(); ++v) {
-      if (!graph_.neighbours(v).empty()) count += 1.0;
-    }
-    return count;
+  bool is_worth_forcing(Index edge) const {
+    return !chosen_[edge] && worth_[edge] >= options_.least_forced;
   }
 
   template <class Condition>
@@ -228,6 +223,15 @@ class PlanarSearch {
 };
 
 }  // namespace
+
+bool has_few_enough_edges(const WeightedGraph& graph, const PlanarSubgraphOptions& options) {
+  double edges = 0.0, vertices = 0.0;
+  for (const auto& [from, to, weight] : graph.edges()) edges += from == to ? 0.0 : 1.0;
+  for (Index v = 0; v < graph.vertex_count(); ++v) {
+    if (!graph.neighbours(v).empty()) vertices += 1.0;
+  }
+  return (1.0 - options.most_left_out) * edges <= 3.0 * vertices;
+}
 
 PlanarSubgraph find_planar_subgraph(const WeightedGraph& graph, std::span<const double> worth,
                                     std::span<const double> suspicion,

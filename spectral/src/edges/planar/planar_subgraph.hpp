@@ -10,7 +10,8 @@ namespace isotherm::spectral::detail {
 
 struct PlanarSubgraphOptions {
   int rounds = 6;              ///< of improvement at most, >= 0
-  double budget = 2.4e7;       ///< edges that planarity tests may look at, over all tests
+  double budget = 1.7e7;       ///< edges that planarity tests may look at, over all tests
+  double least_forced = 0.0;   ///< what is worth less is only taken in where there is room
   double most_left_out = 0.2;  ///< share of the edges; a graph that needs more is not nearly planar
   ProgressCallback progress = {};
 };
@@ -21,6 +22,10 @@ struct PlanarSubgraph {
   double worth = 0.0;        ///< sum over the chosen edges
   double work = 0.0;         ///< edges that planarity tests have looked at
 };
+
+/// Whether a planar part that leaves out no more than options.most_left_out of the edges may exist:
+/// it has up to three edges a vertex (Euler). O(n + m).
+bool has_few_enough_edges(const WeightedGraph& graph, const PlanarSubgraphOptions& options = {});
 
 /// Edges of a nearly planar graph that can be drawn without crossings and to which no other can be
 /// added, of as great a worth as a local search finds: to find the greatest is NP-hard

@@ -1,56 +1,14 @@
 #include "edges/planar/plane_features.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <utility>
 
-#include "edges/planar/planar_subgraph.hpp"
+#include "edges/planar/likely_part.hpp"
 #include "edges/planar/plane_map.hpp"
 
 namespace isotherm::spectral::detail {
 namespace {
 
 constexpr int kMostCrossings = 20;  // more say no more
-
-WalkAffinities affinities_within(const WeightedGraph& graph, const PlanarSubgraph& plane,
-                                 std::span<const VertexPair> pairs,
-                                 const WalkAffinityOptions& options) {
-  const std::vector<double> trust(plane.chosen.begin(), plane.chosen.end());
-  return walk_affinities(graph, trust, pairs, options);
-}
-
-PlanarSubgraph best_subgraph(const WeightedGraph& graph, std::span<const double> lengths,
-                             std::span<const double> suspicion,
-                             const WalkAffinityOptions& options) {
-  constexpr int kMoreStarts = 2;
-  constexpr double kFirst = 0.7;  // of the budget, for the first start
-  PlanarSubgraphOptions search = {.progress = options.progress};
-  const double all = search.budget;
-  search.budget = kFirst * all;
-  auto best = find_planar_subgraph(graph, lengths, suspicion, search);
-  search.budget = all - best.work;
-  for (int start = 0; start < kMoreStarts && !best.chosen.empty(); ++start) {
-    const auto affinities = affinities_within(graph, best, {}, options).edges;
-    std::vector<double> within;
-    for (const double affinity : affinities) {
-      within.push_back(-std::log(std::max(affinity, std::numeric_limits<double>::min())));
-    }
-    auto other = find_planar_subgraph(graph, lengths, within, search);
-    search.budget -= other.work;
-    if (other.worth <= best.worth) break;
-    best = std::move(other);
-  }
-  return best;
-}
-
-double least_positive(const std::vector<double>& affinities) {
-  double least = 1.0;
-  for (const double affinity : affinities) {
-    if (affinity > 0.0) least = std::min(least, affinity);
-  }
-  return least;
-}
 
 std::vector<int> crossings_of_edges(const WeightedGraph& graph, const PlanarSubgraph& plane,
                                     PlaneMap& map) {
@@ -76,14 +34,6 @@ bool is_telling(const std::vector<int>& crossings_of_pairs) {
   return static_cast<double>(hidden) < kMostHidden * static_cast<double>(crossings_of_pairs.size());
 }
 
-std::vector<double> distances_of(const std::vector<double>& affinities, double least) {
-  std::vector<double> distances;
-  for (const double affinity : affinities) {
-    distances.push_back(-std::log(std::max(affinity, least)));
-  }
-  return distances;
-}
-
 std::vector<double> no_more_than(double most, const std::vector<int>& counts) {
   std::vector<double> values;
   for (const int count : counts) values.push_back(std::min<double>(most, count));
@@ -93,24 +43,20 @@ std::vector<double> no_more_than(double most, const std::vector<int>& counts) {
 }  // namespace
 
 std::optional<PlaneFeatures> plane_features(const WeightedGraph& graph,
-                                            std::span<const double> lengths,
-                                            std::span<const double> suspicion,
+                                            std::span<const double> log_odds,
                                             std::span<const VertexPair> pairs,
                                             const WalkAffinityOptions& options) {
   constexpr double kFew = 3.0;
-  const auto plane = best_subgraph(graph, lengths, suspicion, options);
+  const auto plane = likely_planar_part(graph, log_odds, pairs, options);
   if (plane.chosen.empty()) return std::nullopt;
   PlaneMap map(graph, plane.chosen);
   const auto of_pairs = crossings_of_pairs(pairs, map);
   if (!is_telling(of_pairs)) return std::nullopt;
   const auto of_edges = crossings_of_edges(graph, plane, map);
-  const auto affinities = affinities_within(graph, plane, pairs, options);
-  // Ends that no walk joins are as far as any that one does.
-  const double least = std::min(least_positive(affinities.edges), least_positive(affinities.pairs));
   return PlaneFeatures{
       {no_more_than(kMostCrossings, of_edges), no_more_than(kMostCrossings, of_pairs)},
       {no_more_than(kFew, of_edges), no_more_than(kFew, of_pairs)},
-      {distances_of(affinities.edges, least), distances_of(affinities.pairs, least)}};
+      distances_within(graph, plane.chosen, pairs, options)};
 }
 
 }  // namespace isotherm::spectral::detail

@@ -22,15 +22,13 @@ struct PlaneFeatures {
 
 /// For graphs that are nearly planar, such as roads.
 ///
-/// The planar part (planar_subgraph.hpp) is found by the suspicion given, and up to twice again by
-/// the affinities within the one before, as long as that is better.
-/// @param lengths how many original edges each edge stands for
+/// The planar part is the one that explains the graph best (likely_part.hpp).
+/// @param log_odds of true against false, by all that is known without drawing
 /// @return nothing where crossings tell little: the graph is not nearly planar, too
 ///   large to find out, or a fifth of the pairs could be joined without any crossing
 /// @throws Cancelled
 std::optional<PlaneFeatures> plane_features(const WeightedGraph& graph,
-                                            std::span<const double> lengths,
-                                            std::span<const double> suspicion,
+                                            std::span<const double> log_odds,
                                             std::span<const VertexPair> pairs,
                                             const WalkAffinityOptions& options);
 

@@ -109,6 +109,24 @@ TEST(PlanarSubgraph, ChoosesByWorthThenBySuspicion) {
   EXPECT_FALSE(find_planar_subgraph(complete, equal_worth(complete), suspicion).chosen[4]);
 }
 
+TEST(PlanarSubgraph, HasThreeEdgesAVertexAtMost) {
+  EXPECT_TRUE(has_few_enough_edges(WeightedGraph()));
+  EXPECT_TRUE(has_few_enough_edges(grid_graph(10, 10)));
+  EXPECT_TRUE(has_few_enough_edges(complete_graph(8)));   // 0.8 of 28 are less than 24
+  EXPECT_FALSE(has_few_enough_edges(complete_graph(9)));  // 0.8 of 36 are more than 27
+  EXPECT_TRUE(has_few_enough_edges(complete_graph(9), {.most_left_out = 0.25}));
+}
+
+TEST(PlanarSubgraph, ForcesNothingInThatIsWorthLittle) {
+  const auto complete = complete_graph(5);
+  auto worth = equal_worth(complete);
+  worth[9] = 2.0;
+  const PlanarSubgraphOptions options = {.least_forced = 3.0};
+  const auto kept = find_planar_subgraph(complete, worth, equal_worth(complete), options);
+  EXPECT_TRUE(is_maximal(complete, kept.chosen));
+  EXPECT_FALSE(kept.chosen[9]);  // the last in order, which found no room
+}
+
 TEST(PlanarSubgraph, GivesUpOnWhatIsNotNearlyPlanar) {
   const auto dense = complete_graph(30);
   EXPECT_TRUE(find_planar_subgraph(dense, equal_worth(dense), equal_worth(dense)).chosen.empty());

@@ -23,7 +23,7 @@ TEST(PlaneFeatures, TellWhatShortcutsCross) {
   edges.push_back({at(3, 3), at(9, 8), 1.0});  // across many
   const WeightedGraph graph(grid.vertex_count(), edges);
   const std::vector<VertexPair> pairs = {{at(3, 3), at(10, 10)}, {at(7, 7), at(4, 10)}};
-  const auto found = plane_features(graph, equal_worth(graph), equal_worth(graph), pairs, walks());
+  const auto found = plane_features(graph, equal_worth(graph), pairs, walks());
   ASSERT_TRUE(found);
   const auto crossings = found->crossings.edges.end() - 3;
   EXPECT_EQ(crossings[0], 0.0);
@@ -41,11 +41,11 @@ TEST(PlaneFeatures, TellWhatShortcutsCross) {
 TEST(PlaneFeatures, SayNothingWhereCrossingsDoNot) {
   const auto dense = complete_graph(12);
   const std::vector<VertexPair> pairs = {{0, 7}, {1, 8}};
-  EXPECT_FALSE(plane_features(dense, equal_worth(dense), equal_worth(dense), pairs, walks()));
+  EXPECT_FALSE(plane_features(dense, equal_worth(dense), pairs, walks()));
   // Around a ring everything can be joined on the outside.
   const auto ring = ring_graph(30);
-  EXPECT_FALSE(plane_features(ring, equal_worth(ring), equal_worth(ring), pairs, walks()));
-  EXPECT_FALSE(plane_features(WeightedGraph(), {}, {}, {}, walks()));
+  EXPECT_FALSE(plane_features(ring, equal_worth(ring), pairs, walks()));
+  EXPECT_FALSE(plane_features(WeightedGraph(), {}, {}, walks()));
 }
 
 }  // namespace
