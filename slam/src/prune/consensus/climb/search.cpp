@@ -74,10 +74,11 @@ std::vector<Explanation<Pose>> search(const Objective<Pose>& objective,
   for (const auto& standpoint : standpoints(objective, options, progress, pace)) {
     unless_it_breaks_down(try_from, standpoint);
   }
-  if (found.empty()) {
-    climb_from_each_start(options.calibrate, try_from);
-    found.push_back(climb.nothing());
-  }
+  const Explanation<Pose> nothing = climb.nothing();
+  const bool astray = std::ranges::none_of(
+      found, [&](const auto& peak) { return peak.evidence > nothing.evidence; });
+  if (astray) climb_from_each_start(options.calibrate, try_from);
+  found.push_back(nothing);
   keep_peaks(found);
   return found;
 }
