@@ -20,7 +20,7 @@ namespace {
 // be.
 constexpr double kMostApart = 2.0 * kScaleDeviation;
 constexpr double kLeastRedundancy = 1e-6;  // less is rounding
-constexpr int kRepetitions = 10;           // of expectation maximisation
+constexpr int kRepetitions = 10;           // of expectation maximisation, and of Newton's steps
 
 // The log of the likeliest factor on variances of this cost and redundancy, to first order about
 // cost over redundancy, drawn towards zero by the prior. Of nothing redundant nothing is told.
@@ -113,7 +113,7 @@ std::vector<Residual<Pose>> residuals_of(const Assessment<Pose>& assessment,
   return residuals;
 }
 
-// Weighs them by what is expected of each; how many are of which scale then. A residual counts as
+// Weighs them by what is expected of each; how many are of which scale then. A residual tells as
 // far as it is redundant: the rest of it was fitted.
 template <class Pose>
 ScaleShares weigh(const ScaleMixture& mixture, std::vector<Residual<Pose>>& residuals) {

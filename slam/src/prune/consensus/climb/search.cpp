@@ -74,11 +74,10 @@ std::vector<Explanation<Pose>> search(const Objective<Pose>& objective,
   for (const auto& standpoint : standpoints(objective, options, progress, pace)) {
     unless_it_breaks_down(try_from, standpoint);
   }
-  const Explanation<Pose> nothing = climb.nothing();
-  const bool astray = std::ranges::none_of(
-      found, [&](const auto& peak) { return peak.evidence > nothing.evidence; });
+  const bool astray = std::ranges::all_of(
+      found, [&](const auto& peak) { return peak.evidence <= climb.nothing().evidence; });
   if (astray) climb_from_each_start(options.calibrate, try_from);
-  found.push_back(nothing);
+  found.push_back(climb.nothing());
   keep_peaks(found);
   return found;
 }

@@ -24,8 +24,8 @@ double sum_of(const ByScale& loops) { return std::accumulate(loops.begin(), loop
 
 }  // namespace
 
-void ScaleShares::add(const ErrorScale& found, double part) {
-  for (std::size_t j = 0; j < kScaleCount; ++j) loops[j] += part * found.probability[j];
+void ScaleShares::add(const ErrorScale& found) {
+  for (std::size_t j = 0; j < kScaleCount; ++j) loops[j] += found.probability[j];
 }
 
 double ScaleShares::log_evidence() const {

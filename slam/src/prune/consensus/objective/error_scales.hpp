@@ -25,8 +25,8 @@ struct ErrorScale {
 struct ScaleShares {
   ByScale loops{};  ///< how many were found of each scale, as expected
 
-  /// One more, or a part of one.
-  void add(const ErrorScale& found, double part = 1.0);
+  /// One more.
+  void add(const ErrorScale& found);
 
   /// log of the probability of finding these, of parts a lower bound.
   double log_evidence() const;
