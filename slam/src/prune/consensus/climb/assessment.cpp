@@ -69,6 +69,15 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
 }
 
 template <class Pose>
+void Assessment<Pose>::weigh_at(Explanation<Pose>& now, const CovarianceScale& scale) {
+  for (auto& covariance : found_.covariances) covariance *= scale.odometry / now.scale.odometry;
+  now.scale = scale;
+  found_.mixture = expected_mixture(now.scale.loops, now.shares);
+  weigh(now);
+  add_prior(now);
+}
+
+template <class Pose>
 void Assessment<Pose>::find_nearness(const Explanation<Pose>& now) {
   nearness_found_.assessments += 1.0;
   const auto accepted = static_cast<std::size_t>(std::ranges::count(now.accepted, true));

@@ -117,6 +117,19 @@ Explanation<Pose> Climb<Pose>::nothing() {
   return *nothing_;
 }
 
+template <class Pose>
+std::vector<double> Climb<Pose>::first_gains(const std::vector<CovarianceScale>& scales) {
+  start({});
+  std::vector<double> gains;
+  for (const auto& scale : scales) {
+    assessment_.weigh_at(now_, scale);
+    predict_runs();
+    gains.push_back(0.0);
+    for (const Group& group : groups()) gains.back() += group.gain;
+  }
+  return gains;
+}
+
 // That of an earlier climb which passed here, which explains the same loops better, or which holds
 // all loops of this one and explains them better, by its scales and map too where those were
 // `learnt` from them.
@@ -324,14 +337,18 @@ void Climb<Pose>::drop(const Selection& loops) {
 }
 
 template <class Pose>
-Group Climb<Pose>::next_batch() const {
+std::vector<Group> Climb<Pose>::groups() const {
   std::vector<bool> open(dropped_.size());
   for (std::size_t k = 0; k < open.size(); ++k) {
     open[k] = !now_.accepted[k] && !dropped_[k];
   }
-  auto groups = gaining_groups(objective_.runs(), open, now_.standings, run_density_,
-                               [&](Index k) { return assessment_.log_alternative(k); });
-  return most_certain(std::move(groups), accepted_count());
+  return gaining_groups(objective_.runs(), open, now_.standings, run_density_,
+                        [&](Index k) { return assessment_.log_alternative(k); });
+}
+
+template <class Pose>
+Group Climb<Pose>::next_batch() const {
+  return most_certain(groups(), accepted_count());
 }
 
 template <class Pose>

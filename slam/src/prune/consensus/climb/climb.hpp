@@ -54,6 +54,10 @@ class Climb {
   /// Nothing accepted, the covariances as stated.
   Explanation<Pose> nothing();
 
+  /// What all groups of loops that gain by themselves would gain, of nothing accepted, at each of
+  /// these scales.
+  std::vector<double> first_gains(const std::vector<CovarianceScale>& scales);
+
   /// What the climbs did, and whether all ended.
   const std::vector<ConsensusMove>& moves() const noexcept { return moves_; }
   bool settled() const noexcept { return settled_; }
@@ -90,6 +94,7 @@ class Climb {
   Selection misfits() const;
   double gain_of_dropping(const Selection& loops) const;
   void drop(const Selection& loops);
+  std::vector<Group> groups() const;
   Group next_batch() const;
   void accept(const Selection& loops);
   bool learn_more_than(double gain);

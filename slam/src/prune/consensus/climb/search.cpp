@@ -74,9 +74,14 @@ std::vector<Explanation<Pose>> search(const Objective<Pose>& objective,
   for (const auto& standpoint : standpoints(objective, options, progress, pace)) {
     unless_it_breaks_down(try_from, standpoint);
   }
-  const bool astray = std::ranges::all_of(
-      found, [&](const auto& peak) { return peak.evidence <= climb.nothing().evidence; });
-  if (astray) climb_from_each_start(options.calibrate, try_from);
+  const auto astray = [&] {
+    return std::ranges::all_of(
+        found, [&](const auto& peak) { return peak.evidence <= climb.nothing().evidence; });
+  };
+  if (astray()) climb_from_each_start(options.calibrate, try_from);
+  if (options.calibrate && astray()) {
+    for (const auto& start : gaining_starts(climb)) unless_it_breaks_down(try_from, start);
+  }
   found.push_back(climb.nothing());
   keep_peaks(found);
   return found;
