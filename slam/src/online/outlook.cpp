@@ -165,10 +165,9 @@ double Outlook<Pose>::log_alternative(Index edge) const {
   }
   const auto& [from, to, measured, step] = log_.edges()[edge];
   const auto& found = map_.assessment().findings();
-  const double scale = map_.best().scale.loops;
   if (is_copied(edge)) {
-    const double log_sigma =
-        log_determinant(Eigen::LLT<Matrix>(covariance_of(measured))) + Pose::kDof * std::log(scale);
+    const double log_sigma = log_determinant(Eigen::LLT<Matrix>(covariance_of(measured))) +
+                             Pose::kDof * std::log(map_.best().scale.loops);
     return log_copy_density<Pose>(log_sigma);
   }
   const Place nowhere{.chain = -1};
@@ -177,8 +176,7 @@ double Outlook<Pose>::log_alternative(Index edge) const {
   const Index apart = std::abs((a.position + a.steps) - (b.position + b.steps));
   const std::size_t group = a.chain == b.chain ? span_class(apart) : kSpanClasses;
   const Pose forward = from <= to ? measured.T_from_to : measured.T_from_to.inverse();
-  return found.near[group] +
-         map_.objective().nearness().log_false_density(forward, scale * map_.best().shapes.loops);
+  return found.near[group] + map_.objective().nearness().log_false_density(forward);
 }
 
 // Its place among the loops of the snapshot, if that judged it.

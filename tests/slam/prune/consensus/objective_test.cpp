@@ -1,5 +1,6 @@
 #include "prune/consensus/objective/objective.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -95,8 +96,7 @@ TYPED_TEST(ObjectiveOf, IsTheMarginalLikelihoodOfTheLoops) {
     const auto near = objective.near(estimate.poses());
     double alternatives = 0.0;
     for (std::size_t k = 0; k < loops; ++k) {
-      alternatives += objective.log_alternative(static_cast<Index>(k), near, scale.loops,
-                                                Pose::Tangent::Ones());
+      alternatives += objective.log_alternative(static_cast<Index>(k), near, scale.loops);
     }
     // No loop and every loop are equally likely by the Beta-binomial.
     EXPECT_NEAR(with - without + alternatives, dense_log_likelihood(reduced, scale), 0.05);
@@ -132,8 +132,7 @@ TYPED_TEST(ObjectiveOf, RisesByWhatALoopGains) {
   const auto near = objective.near(estimate.poses());
   // All of n against a given n - 1 of n by the Beta-binomial: n to 1.
   const double prior = std::log(static_cast<double>(loops));
-  EXPECT_NEAR(with - without,
-              gain - objective.log_alternative(0, near, 1.0, Pose::Tangent::Ones()) + prior, 0.3)
+  EXPECT_NEAR(with - without, gain - objective.log_alternative(0, near, 1.0) + prior, 0.3)
       << "chance on the map with the loop, and on the one without";
 }
 
@@ -182,6 +181,38 @@ TYPED_TEST(ObjectiveOf, ScalesEachCoordinate) {
   }
   EXPECT_NEAR(rotation_against_translation<Pose>(shapes.loops),
               std::pow(7.0, 1.0 / (Pose::kDof - Pose::kDim) + 1.0 / Pose::kDim), 1e-9);
+}
+
+// Of few poses all pairs are looked at. In other units of length what loops measure is as rare
+// among near poses, and its density in the space of poses scales with the units.
+TYPED_TEST(ObjectiveOf, HoldsLoopsAgainstADensity) {
+  using Pose = TypeParam;
+  Random random(9);
+  const auto made = random_loop_graph<Pose>(random, 60, 30, 1.0);
+  auto larger = made.graph;
+  constexpr double kUnits = 1000.0;
+  typename Pose::Tangent units = Pose::Tangent::Ones();
+  units.template head<Pose::kDim>().setConstant(kUnits);
+  const auto convert = [&units](Pose& T) { T = Pose::exp(units.cwiseProduct(T.log())); };
+  std::ranges::for_each(larger.poses, convert);
+  const typename Pose::Tangent smaller = units.cwiseInverse();
+  for (auto& constraint : larger.constraints) {
+    convert(constraint.T_from_to);
+    constraint.information =
+        smaller.asDiagonal() * constraint.information.eval() * smaller.asDiagonal();
+  }
+  const auto reduced = reduce(made.graph, edge_roles(made.graph));
+  const auto in_other_units = reduce(larger, edge_roles(larger));
+  const NearDensity<Pose> near(reduced);
+  const NearDensity<Pose> scaled(in_other_units);
+  const auto mean = near.log_mean(reduced.poses);
+  const auto scaled_mean = scaled.log_mean(in_other_units.poses);
+  for (std::size_t c = 0; c < kProposalClasses; ++c) EXPECT_NEAR(scaled_mean[c], mean[c], 1e-6);
+  for (std::size_t k = 0; k < reduced.loops.size(); ++k) {
+    EXPECT_NEAR(scaled.log_false_density(in_other_units.loops[k].T_a_b),
+                near.log_false_density(reduced.loops[k].T_a_b) - Pose::kDim * std::log(kUnits),
+                1e-6);
+  }
 }
 
 // A loop of a graph that shrinks to a point is near everything.

@@ -55,7 +55,7 @@ void Assessment<Pose>::restore(const Explanation<Pose>& before, Findings found) 
 template <class Pose>
 bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   rescale(now.shapes);
-  found_.mixture = expected_mixture(now.scale.loops, now.shares);
+  found_.mixture = now.mixture();
   find_peak(now);
   find_nearness(now);
   if (ceiling(now) < least) return false;
@@ -72,7 +72,7 @@ template <class Pose>
 void Assessment<Pose>::weigh_at(Explanation<Pose>& now, const CovarianceScale& scale) {
   for (auto& covariance : found_.covariances) covariance *= scale.odometry / now.scale.odometry;
   now.scale = scale;
-  found_.mixture = expected_mixture(now.scale.loops, now.shares);
+  found_.mixture = now.mixture();
   weigh(now);
   add_prior(now);
 }

@@ -75,7 +75,7 @@ class Assessment {
 
   /// log of the density that a loop's is held against.
   double log_alternative(Index loop) const {
-    return objective_.log_alternative(loop, found_.near, found_.mixture.scale, found_.shapes.loops);
+    return objective_.log_alternative(loop, found_.near, found_.mixture.scale);
   }
 
  private:

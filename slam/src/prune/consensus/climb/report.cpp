@@ -70,7 +70,7 @@ void report(const std::vector<Explanation<Pose>>& found, double significance,
     result.loop_scales.push_back(best.scale.loops * best.shapes.loops[d]);
   }
   result.rotation_scale = rotation_against_translation<Pose>(best.shapes.loops);
-  result.share_of_worse = expected_mixture(best.scale.loops, best.shares).share_of_worse();
+  result.share_of_worse = best.mixture().share_of_worse();
   result.log_evidence = best.evidence;
 }
 

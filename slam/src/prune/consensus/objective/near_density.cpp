@@ -72,24 +72,24 @@ void NearDensity<Pose>::fit(const ReducedGraph<Pose>& graph) {
   for (int d = 0; d < Pose::kDof; ++d) {
     const double mad = median_over([&](const auto& m) { return std::abs(offset(m.T)[d]); });
     const auto count = static_cast<double>(loops.size());
-    spread_[d] = (count * kDeviationOfMad * mad * kDeviationOfMad * mad + step[d]) / (count + 1.0);
-    own_[d] = median_over([d](const auto& m) { return m.covariance(d, d); });
-    const double near = std::sqrt(spread_[d] + own_[d] + step[d]);
+    const double alike =
+        (count * kDeviationOfMad * mad * kDeviationOfMad * mad + step[d]) / (count + 1.0) +
+        median_over([d](const auto& m) { return m.covariance(d, d); });
+    const double near = std::sqrt(alike + step[d]);
     inverse_deviation_[d] = 1.0 / near;
+    narrower_[d] = near / std::sqrt(alike);
     if (d < Pose::kDim) reach_ = std::max(reach_, kReach * near);
   }
   reach_ += center_.norm();
-  for (const auto& loop : loops) measured_.push_back(offset(loop.measured.T));
 }
 
 // f is normal around the median or has the shape of k, with even odds: measurements are often
 // much alike, those of false loops above all, and some are not.
 template <class Pose>
-double NearDensity<Pose>::log_false_density_of(const Tangent& wide, const Tangent& scale) const {
-  const Tangent variance = spread_ + scale.cwiseMax(1.0).cwiseProduct(own_);
-  const Tangent ratio = inverse_deviation_.cwiseProduct(variance.cwiseSqrt()).cwiseInverse();
-  const double nearer = wide.squaredNorm() - wide.cwiseProduct(ratio).squaredNorm();
-  const double more = ratio.array().log().sum() + 0.5 * nearer;  // log of normal over wide
+double NearDensity<Pose>::log_false_density(const Pose& measured) const {
+  const Tangent wide = offset(measured);
+  const double nearer = wide.squaredNorm() - wide.cwiseProduct(narrower_).squaredNorm();
+  const double more = narrower_.array().log().sum() + 0.5 * nearer;  // log of normal over wide
   return inverse_deviation_.array().log().sum() - 0.5 * Pose::kDof * kLog2Pi - std::log(2.0) +
          std::max(more, 0.0) + std::log1p(std::exp(-std::abs(more)));
 }

@@ -36,14 +36,8 @@ class NearDensity {
 
   using Tangent = typename Pose::Tangent;
 
-  /// log f(z) / k(z) of a loop's measurement z, with `scale` the factors on loops' variances.
-  double log_false_density(Index loop, const Tangent& scale) const {
-    return log_false_density_of(measured_[loop], scale);
-  }
-  /// The same of another loop, from the earlier to the later pose.
-  double log_false_density(const Pose& measured, const Tangent& scale) const {
-    return log_false_density_of(offset(measured), scale);
-  }
+  /// log f(z) / k(z) of a loop's measurement z, from the earlier to the later pose.
+  double log_false_density(const Pose& measured) const;
 
  private:
   /// A vertex of the full graph, as odometry ties it to a node.
@@ -55,7 +49,6 @@ class NearDensity {
 
   void fit(const ReducedGraph<Pose>& graph);
   void find_places(const ReducedGraph<Pose>& graph);
-  double log_false_density_of(const Tangent& wide, const Tangent& scale) const;
   Tangent offset(const Pose& T) const;
   std::size_t class_of(std::size_t from, std::size_t to) const;
   void count_pairs(std::size_t anchor, std::array<double, kProposalClasses>& pairs) const;
@@ -63,9 +56,7 @@ class NearDensity {
   Pose center_inverse_;
   typename Pose::Translation center_;
   Tangent inverse_deviation_;
-  Tangent spread_;                 // squared deviations of what loops measure, less
-  Tangent own_;                    // their own stated variances
-  std::vector<Tangent> measured_;  // offset of each loop's measurement
+  Tangent narrower_;  // of k: times the deviation of what loops measure
   std::vector<Place> places_;
   std::vector<Index> chain_;          // of each place
   std::vector<std::size_t> anchors_;  // places in random order

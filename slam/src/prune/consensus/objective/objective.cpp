@@ -32,6 +32,9 @@ Objective<Pose>::Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
       calibrate_(calibrate) {
   const MapVolume<Pose> map(stated_.reduced.poses);
   log_volume_ = 0.5 * (map.variance().array().log().sum() + Pose::kDof * kLog2Pi);
+  for (const auto& loop : forward_loops(stated_.reduced, {})) {
+    log_false_density_.push_back(near_.log_false_density(loop.measured.T));
+  }
   for (const auto& loop : stated_.reduced.loops) {
     log_sigma_.push_back(log_determinant(Eigen::LLT<typename Pose::Matrix>(loop.covariance)));
   }
@@ -45,11 +48,10 @@ Objective<Pose> Objective<Pose>::of(const std::vector<Index>& loops) const {
 }
 
 template <class Pose>
-double Objective<Pose>::log_alternative(Index loop, const NearByClass& near, double loop_scale,
-                                        const typename Pose::Tangent& shape) const {
+double Objective<Pose>::log_alternative(Index loop, const NearByClass& near,
+                                        double loop_scale) const {
   if (!runs_.copied(loop)) {
-    return near[proposal_class(stated_.reduced, loop)] +
-           near_.log_false_density(loop, loop_scale * shape);
+    return near[proposal_class(stated_.reduced, loop)] + log_false_density_[loop];
   }
   return log_copy_density<Pose>(log_sigma_[loop] + Pose::kDof * std::log(loop_scale));
 }
@@ -80,8 +82,7 @@ double Objective<Pose>::evidence(const Explanation<Pose>& explanation,
   double kept = 0.0;
   for (std::size_t k = 0; k < explanation.accepted.size(); ++k) {
     if (!explanation.accepted[k]) continue;
-    alternatives +=
-        log_alternative(static_cast<Index>(k), near, scale.loops, explanation.shapes.loops);
+    alternatives += log_alternative(static_cast<Index>(k), near, scale.loops);
     kept += 1.0;
   }
   const auto steps = static_cast<double>(graph.reduced.steps.size());

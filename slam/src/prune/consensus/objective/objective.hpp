@@ -39,6 +39,11 @@ struct Explanation {
   typename Estimate<Pose>::Layout layout;
   std::vector<Standing> standings;  ///< of each loop, given all others
   double evidence = 0.0;            ///< Objective::evidence()
+
+  /// What is expected of how accurate the next loop is.
+  ScaleMixture mixture() const {
+    return expected_mixture(scale.loops, shares, shapes.loops.maxCoeff());
+  }
 };
 
 /// The log evidence of an explanation: of the accepted set A and the scales,
@@ -82,8 +87,7 @@ class Objective {
   /// The density that a loop's is held against: that of loops near by chance; for one that
   /// copies the measurement of the one before it in its run, that of a copy, so that a group
   /// of copies counts as one draw.
-  double log_alternative(Index loop, const NearByClass& near, double loop_scale,
-                         const typename Pose::Tangent& shape) const;
+  double log_alternative(Index loop, const NearByClass& near, double loop_scale) const;
 
   /// How easily poses are near each other, for loops that are not among the graph's.
   const NearDensity<Pose>& nearness() const noexcept { return near_; }
@@ -125,6 +129,7 @@ class Objective {
   bool calibrate_;
   double log_volume_;
   std::vector<double> log_sigma_;  // log|Sigma| of each loop
+  std::vector<double> log_false_density_;
 };
 
 extern template class Objective<Pose2>;
