@@ -31,7 +31,7 @@ void Snapshot<Pose>::prepare(const Pace& pace) {
   const auto unusable = unusable_information(graph_, roles_);
   if (!unusable.empty()) graph_ = with_usable_information(graph_, roles_, unusable);
   objective_.emplace(graph_, roles_, options_.window, options_.calibrate);
-  climb_.emplace(*objective_, options_, no_progress_, pace);
+  climb_.emplace(*objective_, options_, RunContext{.threads = 1}, pace);
   pace(2.0 * static_cast<double>(graph_.constraints.size()));
 }
 
@@ -50,7 +50,7 @@ void Snapshot<Pose>::explain(const std::vector<const Snapshot*>& others, bool ev
   for (const Snapshot* other : others) {
     if (other->explained()) add(go_on_from(*other, everywhere));
   }
-  if (everywhere || !found_) climb_from_nothing(everywhere, counted);
+  if (everywhere || !found_) climb_from_nothing(everywhere);
   batch_work_.growing += prepared;
   climb_->hold_nearness(false);
   climb_->stand_at(best_);
@@ -59,11 +59,11 @@ void Snapshot<Pose>::explain(const std::vector<const Snapshot*>& others, bool ev
 
 // As the batch does, which finds the density of near pairs at every assessment.
 template <class Pose>
-void Snapshot<Pose>::climb_from_nothing(bool everywhere, const Pace& pace) {
+void Snapshot<Pose>::climb_from_nothing(bool everywhere) {
   const double before = work_;
   const auto nearness_before = assessment().nearness_found();
   if (everywhere) {
-    for (const auto& peak : search(*objective_, options_, no_progress_, pace, *climb_)) {
+    for (const auto& peak : search(*climb_)) {
       surpassed_ = add(peak) || surpassed_;
     }
   } else {

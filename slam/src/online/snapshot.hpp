@@ -60,14 +60,13 @@ class Snapshot {
  private:
   void prepare(const Pace& pace);
   Explanation<Pose> go_on_from(const Snapshot& other, bool everywhere);
-  void climb_from_nothing(bool everywhere, const Pace& pace);
+  void climb_from_nothing(bool everywhere);
   bool add(const Explanation<Pose>& next);
   Standpoint<Pose> carry(const Snapshot& other) const;
   void judge();
 
   PoseGraph<Pose> graph_;
   ConsensusOptions options_;
-  ProgressCallback no_progress_;
   EdgeRoles roles_;
   std::optional<SetAside> set_aside_;
   std::optional<Objective<Pose>> objective_;

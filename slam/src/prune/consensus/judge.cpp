@@ -25,8 +25,8 @@ ConsensusResult detail::judge_by_evidence(const PoseGraph<Pose>& graph, const Ed
   result.verdicts = detail::candidate_verdicts(graph, roles);
   if (roles.candidates.empty()) return result;
   const detail::Objective<Pose> objective(graph, roles, options.window, options.calibrate);
-  detail::Climb<Pose> climb(objective, options, run.progress);
-  const auto found = detail::search(objective, options, run.progress, {}, climb);
+  detail::Climb<Pose> climb(objective, options, run);
+  const auto found = detail::search(climb);
   result.moves = climb.moves();
   result.settled = climb.settled();
   detail::report(found, options.significance, result);

@@ -36,7 +36,7 @@ double highest_evidence(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                         const std::vector<bool>& accepted, const ConsensusOptions& options,
                         const RunContext& run) {
   const detail::Objective<Pose> objective(graph, roles, options.window, options.calibrate);
-  detail::Climb<Pose> climb(objective, options, run.progress);
+  detail::Climb<Pose> climb(objective, options, run);
   double highest = -std::numeric_limits<double>::infinity();
   detail::climb_from_each_start(options.calibrate, [&](const auto& start) {
     highest = std::max(highest, climb.settled_on(accepted, start).evidence);

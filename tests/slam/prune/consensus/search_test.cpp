@@ -20,7 +20,7 @@ using isotherm_test::worst_difference;
 
 constexpr Index kWindow = 20;
 const ConsensusOptions kOptions;
-const ProgressCallback kSilent;
+const RunContext kSilent;
 
 template <class Pose>
 Index closed_at(const ReducedGraph<Pose>& graph, Index loop) {
@@ -112,7 +112,7 @@ TEST(Search, OnASampleFindsWhatClimbsFromEachStartFind) {
   const Objective<Pose2> objective(bad.graph, edge_roles(bad.graph), kWindow);
   ASSERT_GE(sample(objective.stated().reduced, kWindow).size(), kLeastSample);
   Climb<Pose2> climb(objective, kOptions, kSilent);
-  const auto found = search(objective, kOptions, kSilent, {}, climb);
+  const auto found = search(climb);
   Climb<Pose2> whole(objective, kOptions, kSilent);
   double highest = whole.nothing().evidence;
   std::vector<bool> accepted;
@@ -144,7 +144,7 @@ TEST(Search, GivesEachPeakOnceTheBestFirst) {
   const auto made = random_loop_graph<Pose2>(random, 80, 40, 1.0);
   const Objective<Pose2> objective(made.graph, edge_roles(made.graph), kWindow);
   Climb<Pose2> climb(objective, kOptions, kSilent);
-  const auto found = search(objective, kOptions, kSilent, {}, climb);
+  const auto found = search(climb);
   ASSERT_GE(found.size(), 2U);  // that all are true, and that none is
   for (std::size_t i = 1; i < found.size(); ++i) {
     EXPECT_LE(found[i].evidence, found[i - 1].evidence);

@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "isotherm/base/parallel.hpp"
 #include "prune/consensus/constants.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
 #include "prune/consensus/objective/loop_gain.hpp"
@@ -22,6 +23,20 @@ constexpr double kCovarianceWork = 2.0;
 constexpr double kOtherMap = 1.1;
 constexpr std::size_t kFewMore = 5;
 
+// Loops that are weighed in the time that a thread takes to begin, several times.
+constexpr std::size_t kBlock = 512;
+
+template <class Function>
+void for_each_loop(std::size_t count, int threads, const Function& function) {
+  const auto blocks = static_cast<std::int64_t>((count + kBlock - 1) / kBlock);
+  parallel_for(blocks, threads, {}, "loops", [&](std::int64_t block) {
+    const std::size_t begin = static_cast<std::size_t>(block) * kBlock;
+    for (std::size_t k = begin; k < std::min(begin + kBlock, count); ++k) {
+      function(static_cast<Index>(k));
+    }
+  });
+}
+
 bool is_much_more(std::size_t many, std::size_t few) {
   return static_cast<double>(many) > kOtherMap * static_cast<double>(few + kFewMore);
 }
@@ -29,9 +44,10 @@ bool is_much_more(std::size_t many, std::size_t few) {
 }  // namespace
 
 template <class Pose>
-Assessment<Pose>::Assessment(const Objective<Pose>& objective, Pace pace)
+Assessment<Pose>::Assessment(const Objective<Pose>& objective, Pace pace, int threads)
     : objective_(objective),
       pace_(std::move(pace)),
+      threads_(threads),
       found_{.graph = std::make_shared<ScaledGraph<Pose>>(objective.stated())},
       estimate_(found_.graph->reduced, pace_),
       odometry_(estimate_.layout()) {
@@ -187,15 +203,17 @@ template <class Pose>
 void Assessment<Pose>::predict(Explanation<Pose>& now) {
   const bool alone = std::ranges::count(now.accepted, true) == 0 && found_.graph->is_forest();
   now.standings.resize(now.accepted.size());
+  const auto is_solved = [&](Index loop) {
+    const auto [first, second] = estimate_.parts(graph().loops[loop]);
+    return !alone && first == second;
+  };
+  for_each_loop(now.accepted.size(), threads_, [&](Index loop) {
+    if (is_solved(loop)) return;
+    found_.covariances[loop] = odometry_says(loop, now.scale.odometry);
+  });
   std::vector<Index> solved;
-  for (std::size_t k = 0; k < now.accepted.size(); ++k) {
-    const auto loop = static_cast<Index>(k);
-    const auto [first, second] = estimate_.parts(graph().loops[k]);
-    if (!alone && first == second) {
-      solved.push_back(loop);
-    } else {
-      found_.covariances[k] = odometry_says(loop, now.scale.odometry);
-    }
+  for (Index loop = 0; loop < static_cast<Index>(now.accepted.size()); ++loop) {
+    if (is_solved(loop)) solved.push_back(loop);
   }
   solve(now, solved, !alone);
   found_.held.assign(now.accepted.size(), 0.0);
@@ -234,10 +252,10 @@ void Assessment<Pose>::solve(Explanation<Pose>& now, const std::vector<Index>& l
 template <class Pose>
 void Assessment<Pose>::weigh(Explanation<Pose>& now) {
   find_redundancy(now);
-  for (std::size_t k = 0; k < now.accepted.size(); ++k) {
-    const auto loop = static_cast<Index>(k);
-    now.standings[k] = now.accepted[k] ? accepted_standing(now, loop) : other_standing(now, loop);
-  }
+  for_each_loop(now.accepted.size(), threads_, [&](Index loop) {
+    now.standings[loop] =
+        now.accepted[loop] ? accepted_standing(now, loop) : other_standing(now, loop);
+  });
 }
 
 template <class Pose>

@@ -17,8 +17,8 @@ class Assessment {
  public:
   using Matrix = typename Pose::Matrix;
 
-  /// `objective` must outlive this object.
-  explicit Assessment(const Objective<Pose>& objective, Pace pace = {});
+  /// `objective` must outlive this object. Loops are weighed on `threads` threads (0: all cores).
+  explicit Assessment(const Objective<Pose>& objective, Pace pace = {}, int threads = 1);
 
   /// Back to the layout of odometry.
   void start_over();
@@ -65,6 +65,11 @@ class Assessment {
   /// The next assessment starts from this layout.
   void stand_on(const typename Estimate<Pose>::Layout& layout) { estimate_.restore(layout); }
 
+  /// Where `now` puts the poses if they are drawn anew. See Estimate.
+  typename Estimate<Pose>::Layout relaxed(const Explanation<Pose>& now) {
+    return estimate_.relaxed(now.accepted, now.scale);
+  }
+
   const Estimate<Pose>& estimate() const noexcept { return estimate_; }
 
   const ReducedGraph<Pose>& graph() const noexcept { return found_.graph->reduced; }
@@ -98,6 +103,7 @@ class Assessment {
 
   const Objective<Pose>& objective_;
   Pace pace_;
+  int threads_;
   Findings found_;
   Estimate<Pose> estimate_;
   typename Estimate<Pose>::Layout odometry_;

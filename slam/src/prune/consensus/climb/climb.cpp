@@ -31,12 +31,13 @@ auto scales_of(const Found& found) {
 }  // namespace
 
 template <class Pose>
-Climb<Pose>::Climb(const Objective<Pose>& objective, const ConsensusOptions& options,
-                   const ProgressCallback& progress, Pace pace)
+Climb<Pose>::Climb(const Objective<Pose>& objective, ConsensusOptions options, RunContext run,
+                   Pace pace)
     : objective_(objective),
-      options_(options),
-      progress_(progress),
-      assessment_(objective, std::move(pace)) {}
+      options_(std::move(options)),
+      run_(std::move(run)),
+      pace_(std::move(pace)),
+      assessment_(objective, pace_, run_.threads) {}
 
 template <class Pose>
 Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
@@ -192,7 +193,7 @@ void Climb<Pose>::stand_on(Standpoint<Pose> standpoint) {
 template <class Pose>
 void Climb<Pose>::begin() {
   dropped_.assign(now_.accepted.size(), false);
-  learnt_from_ = 0;
+  learnt_from_ = drawn_from_ = 0;
   failed_ = {};
   longest_ = std::max(longest_, passed_.size() - began_);
   began_ = passed_.size();
@@ -211,6 +212,8 @@ const Explanation<Pose>* Climb<Pose>::grow() {
     const std::size_t had = accepted_count();
     const bool learnt =
         had >= kMoreTelling * learnt_from_ && learn_more_than(gain_of_dropping(misfits()));
+    const bool settled = had == 0 || assessment_.estimate().settled();
+    if (!settled && had >= kMoreTelling * drawn_from_) draw_anew();
     if (const auto* known = had > 0 ? peak_ahead(learnt) : nullptr) return known;
     if (!learnt && !move()) return nullptr;
     const double enough = std::max(summit() - best_.evidence, 0.0) / kPatience;
@@ -283,6 +286,17 @@ bool Climb<Pose>::weigh_otherwise() {
   }
   failed_[Trial::wide_loops] = true;
   return false;
+}
+
+// Steps that do not settle may be on the way to another minimum than the least.
+template <class Pose>
+void Climb<Pose>::draw_anew() {
+  drawn_from_ = accepted_count();
+  try {
+    const Layout relaxed = assessment_.relaxed(now_);
+    try_with([](auto&) {}, kBetter, &relaxed);
+  } catch (const NumericalError&) {  // nothing to start from
+  }
 }
 
 template <class Pose>
@@ -414,8 +428,8 @@ void Climb<Pose>::note(std::size_t accepted, std::size_t dropped) {
 
 template <class Pose>
 void Climb<Pose>::tell_progress() const {
-  if (!progress_) return;
-  if (!progress_({"consensus", accepted_count(), now_.accepted.size()})) throw Cancelled();
+  if (!run_.progress) return;
+  if (!run_.progress({"consensus", accepted_count(), now_.accepted.size()})) throw Cancelled();
 }
 
 template class Climb<Pose2>;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "isotherm/base/run_context.hpp"
 #include "isotherm/slam/prune/consensus.hpp"
 #include "prune/consensus/climb/assessment.hpp"
 #include "prune/consensus/climb/groups.hpp"
@@ -24,9 +25,14 @@ class Climb {
  public:
   using Selection = std::vector<Index>;
 
-  /// All must outlive this object.
-  Climb(const Objective<Pose>& objective, const ConsensusOptions& options,
-        const ProgressCallback& progress, Pace pace = {});
+  /// `objective` must outlive this object.
+  Climb(const Objective<Pose>& objective, ConsensusOptions options, RunContext run, Pace pace = {});
+
+  /// The same on other loops.
+  Climb on(const Objective<Pose>& objective) const { return {objective, options_, run_, pace_}; }
+
+  const Objective<Pose>& objective() const noexcept { return objective_; }
+  const ConsensusOptions& options() const noexcept { return options_; }
 
   /// Climbs from nothing accepted, with `start` as the factors on the covariances; the best
   /// explanation on the way.
@@ -100,14 +106,16 @@ class Climb {
   bool learn_more_than(double gain);
   bool weigh_by_others();
   bool weigh_otherwise();
+  void draw_anew();
   bool try_with(const Change& change, double gain = kBetter, const Layout* from = nullptr);
   void predict_runs();
   void note(std::size_t accepted, std::size_t dropped);
   void tell_progress() const;
 
   const Objective<Pose>& objective_;
-  const ConsensusOptions& options_;
-  const ProgressCallback& progress_;
+  ConsensusOptions options_;
+  RunContext run_;
+  Pace pace_;
   Assessment<Pose> assessment_;
   Explanation<Pose> now_;
   Explanation<Pose> best_;
@@ -119,6 +127,7 @@ class Climb {
   std::size_t longest_ = 0;       // of earlier climbs
   std::vector<bool> dropped_;     // since the climb last rose; not tried again
   std::size_t learnt_from_ = 0;   // loops, at the last lesson
+  std::size_t drawn_from_ = 0;    // loops, when the map was last drawn anew
   std::array<bool, 4> failed_{};  // trials here; not repeated until a change
   std::vector<ConsensusMove> moves_;
   bool settled_ = true;

@@ -41,18 +41,17 @@ KnownBefore known_of(const std::vector<Index>& sampled, std::size_t all) {
 // Where the climbs on a sample of the loops ended; none of few loops, or where few are true: these
 // tell nothing of scales.
 template <class Pose>
-std::vector<Standpoint<Pose>> standpoints(const Objective<Pose>& objective,
-                                          const ConsensusOptions& options,
-                                          const ProgressCallback& progress, const Pace& pace) {
+std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole) {
+  const Objective<Pose>& objective = whole.objective();
   const auto& all = objective.stated().reduced;
-  const auto sampled = sample(all, options.window);
+  const auto sampled = sample(all, whole.options().window);
   std::vector<Standpoint<Pose>> standpoints;
   if (sampled.size() < kLeastSample) return standpoints;
   const Objective<Pose> part = objective.of(sampled);
-  Climb<Pose> climb(part, options, progress, pace);
-  const auto found = search(part, options, progress, pace, climb);
+  Climb<Pose> climb = whole.on(part);
+  const auto found = search(climb);
   if (accepted_by(found.front()) < kFewLoops) return standpoints;
-  const double least = found.front().evidence - log_odds_of(1.0 - options.significance);
+  const double least = found.front().evidence - log_odds_of(1.0 - whole.options().significance);
   const KnownBefore known = known_of(sampled, all.loops.size());
   for (const auto& peak : found) {
     if (peak.evidence < least) break;
@@ -65,21 +64,19 @@ std::vector<Standpoint<Pose>> standpoints(const Objective<Pose>& objective,
 }  // namespace
 
 template <class Pose>
-std::vector<Explanation<Pose>> search(const Objective<Pose>& objective,
-                                      const ConsensusOptions& options,
-                                      const ProgressCallback& progress, const Pace& pace,
-                                      Climb<Pose>& climb) {
+std::vector<Explanation<Pose>> search(Climb<Pose>& climb) {
+  const bool calibrate = climb.options().calibrate;
   std::vector<Explanation<Pose>> found;
   const auto try_from = [&](const auto& start) { found.push_back(climb.from(start)); };
-  for (const auto& standpoint : standpoints(objective, options, progress, pace)) {
+  for (const auto& standpoint : standpoints(climb)) {
     unless_it_breaks_down(try_from, standpoint);
   }
   const auto astray = [&] {
     return std::ranges::all_of(
         found, [&](const auto& peak) { return peak.evidence <= climb.nothing().evidence; });
   };
-  if (astray()) climb_from_each_start(options.calibrate, try_from);
-  if (options.calibrate && astray()) {
+  if (astray()) climb_from_each_start(calibrate, try_from);
+  if (calibrate && astray()) {
     for (const auto& start : gaining_starts(climb)) unless_it_breaks_down(try_from, start);
   }
   found.push_back(climb.nothing());
@@ -87,11 +84,7 @@ std::vector<Explanation<Pose>> search(const Objective<Pose>& objective,
   return found;
 }
 
-template std::vector<Explanation<Pose2>> search(const Objective<Pose2>&, const ConsensusOptions&,
-                                                const ProgressCallback&, const Pace&,
-                                                Climb<Pose2>&);
-template std::vector<Explanation<Pose3>> search(const Objective<Pose3>&, const ConsensusOptions&,
-                                                const ProgressCallback&, const Pace&,
-                                                Climb<Pose3>&);
+template std::vector<Explanation<Pose2>> search(Climb<Pose2>&);
+template std::vector<Explanation<Pose3>> search(Climb<Pose3>&);
 
 }  // namespace isotherm::slam::detail

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "isotherm/base/error.hpp"
+#include "isotherm/slam/optimize/initialize.hpp"
 #include "isotherm/spectral/sparse/block_covariance.hpp"
 #include "isotherm/spectral/sparse/covariance_work.hpp"
 #include "isotherm/spectral/sparse/earlier_factor.hpp"
@@ -95,13 +96,19 @@ void Estimate<Pose>::lay_out(const std::vector<bool>& accepted) {
   component_ = equations_->gauge().component;
 }
 
+// The factor on the information of a used link.
+template <class Pose>
+double Estimate<Pose>::weight(Index link, const CovarianceScale& scale) const {
+  const auto step_count = static_cast<Index>(graph_->steps.size());
+  if (link < step_count) return 1.0 / scale.odometry;
+  return 1.0 / scale.loops * (weights_.empty() ? 1.0 : weights_[used_loops_[link - step_count]]);
+}
+
 template <class Pose>
 void Estimate<Pose>::linearize(const CovarianceScale& scale) {
-  const auto step_count = static_cast<Index>(graph_->steps.size());
   const auto scaling = [&](Index link, double) {
-    double weight = 1.0 / (link < step_count ? scale.odometry : scale.loops);
-    if (link >= step_count && !weights_.empty()) weight *= weights_[used_loops_[link - step_count]];
-    return EdgeScaling{weight, weight, 0.0};
+    const double factor = weight(link, scale);
+    return EdgeScaling{factor, factor, 0.0};
   };
   linearized_ = poses_;
   equations_->linearize(poses_, scaling);
@@ -156,18 +163,29 @@ void Estimate<Pose>::settle(const std::vector<bool>& accepted, const CovarianceS
                             int max_steps, const std::function<bool()>& reweigh) {
   lay_out(accepted);
   bool weighed = false;
-  bool settled = false;
-  for (int k = 0; k < max_steps && !settled; ++k) {
+  settled_ = false;
+  for (int k = 0; k < max_steps && !settled_; ++k) {
     linearize(scale);
     const double length = step();
     weighed = length < kNear;
-    settled = weighed && !reweigh() && length < kSettled;
+    settled_ = weighed && !reweigh() && length < kSettled;
   }
-  if (settled && factorised_) return;
+  if (settled_ && factorised_) return;
   if (!weighed) reweigh();
   linearize(scale);
   factorise();
   step();
+}
+
+template <class Pose>
+typename Estimate<Pose>::Layout Estimate<Pose>::relaxed(const std::vector<bool>& accepted,
+                                                        const CovarianceScale& scale) {
+  PoseGraph<Pose> used = used_links(accepted);
+  for (Index k = 0; k < used.constraint_count(); ++k) {
+    used.constraints[k].information *= weight(k, scale);
+  }
+  used.poses = poses_;
+  return {initial_poses(used, EdgeRoles{}, Initialization::chordal), component_};
 }
 
 template <class Pose>

@@ -58,12 +58,20 @@ class Estimate {
 
   const std::vector<Pose>& poses() const noexcept { return poses_; }
 
+  /// Whether the last update ended before its steps did.
+  bool settled() const noexcept { return settled_; }
+
   /// Where the poses are, without the factor there.
   struct Layout {
     std::vector<Pose> poses;
     std::vector<Index> component;
   };
   Layout layout() const { return {poses_, component_}; }
+
+  /// Where the chordal relaxation of odometry and the accepted loops has the poses, near the least
+  /// of many minima.
+  /// @throws NumericalError if its equations break down
+  Layout relaxed(const std::vector<bool>& accepted, const CovarianceScale& scale);
 
   /// Takes poses back to where they were; update() must follow.
   void restore(Layout layout);
@@ -102,6 +110,7 @@ class Estimate {
 
  private:
   void lay_out(const std::vector<bool>& accepted);
+  double weight(Index link, const CovarianceScale& scale) const;
   void linearize(const CovarianceScale& scale);
   void factorise();
   Eigen::VectorXd next_move();
@@ -122,6 +131,7 @@ class Estimate {
   std::optional<NormalEquations<Pose>> equations_;
   bool has_factor_ = false;  // the equations have one, if of other poses or weights
   bool factorised_ = false;  // it is of these
+  bool settled_ = true;      // in the steps of the last update
   Pace pace_;                // whenever the equations were set up
 };
 

@@ -90,11 +90,11 @@ std::vector<std::vector<Index>> name_conflicts(const ReducedGraph<Pose>& graph,
     if (!refuted[k] || group == groups.end()) continue;
     const auto near = group->second.nearest(loops[k].from, loops[k].to);
     auto& named = conflicts[k];
-    std::ranges::copy_if(near, std::back_inserter(named), [&](Index other) {
-      return pair_chi2(graph, scale, loops[other], loops[k]) > gate;
-    });
-    if (named.empty()) named = near;
-    named.resize(std::min(named.size(), kNamed));
+    for (const Index other : near) {
+      if (named.size() == kNamed) break;
+      if (pair_chi2(graph, scale, loops[other], loops[k]) > gate) named.push_back(other);
+    }
+    if (named.empty()) named.assign(near.begin(), near.begin() + std::min(near.size(), kNamed));
   }
   return conflicts;
 }
