@@ -75,4 +75,21 @@ void parallel_for(std::int64_t count, int threads, const ProgressCallback& progr
                            [&body](std::size_t, std::int64_t index) { body(index); });
 }
 
+void parallel_in_blocks(std::size_t count, int threads,
+                        const std::function<void(std::size_t, std::size_t, std::size_t)>& body) {
+  const auto blocks = static_cast<std::int64_t>(parallel_block_count(count));
+  parallel_for(blocks, threads, {}, "blocks", [&](std::int64_t index) {
+    const auto block = static_cast<std::size_t>(index);
+    const std::size_t begin = block * kParallelBlock;
+    body(block, begin, std::min(begin + kParallelBlock, count));
+  });
+}
+
+void parallel_for_each(std::size_t count, int threads,
+                       const std::function<void(std::size_t)>& body) {
+  parallel_in_blocks(count, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t index = begin; index < end; ++index) body(index);
+  });
+}
+
 }  // namespace isotherm

@@ -1,5 +1,7 @@
 #include "isotherm/base/parallel.hpp"
 
+#include <cstddef>
+#include <numeric>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -17,6 +19,26 @@ TEST(ParallelFor, VisitsEveryIndexOnce) {
     EXPECT_THAT(visits, testing::Each(1));
   }
   parallel_for(0, 1, {}, "test", [](std::int64_t) { FAIL(); });
+}
+
+TEST(ParallelInBlocks, CutsAlikeWhateverTheThreads) {
+  for (const std::size_t count : {0U, 1U, 512U, 1025U}) {
+    for (const int threads : {0, 1, 3}) {
+      std::vector<int> visits(count, 0);
+      std::vector<std::size_t> lengths(parallel_block_count(count), 0);
+      parallel_in_blocks(count, threads,
+                         [&](std::size_t block, std::size_t begin, std::size_t end) {
+                           EXPECT_EQ(begin, block * kParallelBlock);
+                           lengths[block] = end - begin;
+                           for (std::size_t k = begin; k < end; ++k) ++visits[k];
+                         });
+      EXPECT_THAT(visits, testing::Each(1));
+      EXPECT_EQ(std::accumulate(lengths.begin(), lengths.end(), std::size_t{0}), count);
+      EXPECT_THAT(lengths, testing::Each(testing::Gt(0U)));
+      parallel_for_each(count, threads, [&](std::size_t k) { ++visits[k]; });
+      EXPECT_THAT(visits, testing::Each(2));
+    }
+  }
 }
 
 TEST(ParallelFor, CancelsWhenProgressSaysSo) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -47,5 +48,21 @@ void parallel_for(std::int64_t count, std::size_t grain, int threads,
                              body(*workspace, index);
                            });
 }
+
+/// How many blocks parallel_in_blocks() cuts `count` into.
+inline constexpr std::size_t kParallelBlock = 512;
+constexpr std::size_t parallel_block_count(std::size_t count) {
+  return (count + kParallelBlock - 1) / kParallelBlock;
+}
+
+/// Runs body(block, begin, end) for the ranges [begin, end) that [0, count) is cut into, the same
+/// whatever the number of threads: for bodies so short that only many are worth a thread, and for
+/// sums, of which each block has its own.
+void parallel_in_blocks(std::size_t count, int threads,
+                        const std::function<void(std::size_t, std::size_t, std::size_t)>& body);
+
+/// Runs body(index) for every index in [0, count), a block of them a task.
+void parallel_for_each(std::size_t count, int threads,
+                       const std::function<void(std::size_t)>& body);
 
 }  // namespace isotherm

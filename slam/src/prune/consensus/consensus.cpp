@@ -32,7 +32,7 @@ typename Pose::Tangent shape_of(const std::vector<double>& scales, double mean) 
 // At the scales that were learnt; a pair of true loops is taken for a conflict as rarely as asked.
 template <class Pose>
 void add_conflicts(const PoseGraph<Pose>& graph, const EdgeRoles& roles, double significance,
-                   ConsensusResult& result) {
+                   int threads, ConsensusResult& result) {
   const auto kept = decided_as(result.verdicts, Verdict::keep);
   const auto pruned = decided_as(result.verdicts, Verdict::prune);
   if (std::ranges::count(kept, true) == 0 || std::ranges::count(pruned, true) == 0) return;
@@ -42,7 +42,7 @@ void add_conflicts(const PoseGraph<Pose>& graph, const EdgeRoles& roles, double 
   const auto reduced =
       detail::scaled_graph(detail::in_own_frames(graph, roles), roles, shapes).reduced;
   const double gate = chi_squared_quantile(1.0 - significance, Pose::kDof);
-  auto conflicts = detail::name_conflicts(reduced, scale, gate, kept, pruned);
+  auto conflicts = detail::name_conflicts(reduced, scale, gate, kept, pruned, threads);
   for (std::size_t k = 0; k < conflicts.size(); ++k) {
     result.details[k].conflicts = std::move(conflicts[k]);
   }
@@ -61,7 +61,7 @@ ConsensusResult consensus(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                           const ConsensusOptions& options, const RunContext& run) {
   options.validate();
   auto result = detail::judge_by_evidence(graph, roles, options, run);
-  add_conflicts(graph, roles, options.significance, result);
+  add_conflicts(graph, roles, options.significance, run.threads, result);
   return result;
 }
 

@@ -23,20 +23,6 @@ constexpr double kCovarianceWork = 2.0;
 constexpr double kOtherMap = 1.1;
 constexpr std::size_t kFewMore = 5;
 
-// Loops that are weighed in the time that a thread takes to begin, several times.
-constexpr std::size_t kBlock = 512;
-
-template <class Function>
-void for_each_loop(std::size_t count, int threads, const Function& function) {
-  const auto blocks = static_cast<std::int64_t>((count + kBlock - 1) / kBlock);
-  parallel_for(blocks, threads, {}, "loops", [&](std::int64_t block) {
-    const std::size_t begin = static_cast<std::size_t>(block) * kBlock;
-    for (std::size_t k = begin; k < std::min(begin + kBlock, count); ++k) {
-      function(static_cast<Index>(k));
-    }
-  });
-}
-
 bool is_much_more(std::size_t many, std::size_t few) {
   return static_cast<double>(many) > kOtherMap * static_cast<double>(few + kFewMore);
 }
@@ -207,9 +193,9 @@ void Assessment<Pose>::predict(Explanation<Pose>& now) {
     const auto [first, second] = estimate_.parts(graph().loops[loop]);
     return !alone && first == second;
   };
-  for_each_loop(now.accepted.size(), threads_, [&](Index loop) {
-    if (is_solved(loop)) return;
-    found_.covariances[loop] = odometry_says(loop, now.scale.odometry);
+  parallel_for_each(now.accepted.size(), threads_, [&](std::size_t k) {
+    const auto loop = static_cast<Index>(k);
+    if (!is_solved(loop)) found_.covariances[k] = odometry_says(loop, now.scale.odometry);
   });
   std::vector<Index> solved;
   for (Index loop = 0; loop < static_cast<Index>(now.accepted.size()); ++loop) {
@@ -243,7 +229,7 @@ void Assessment<Pose>::solve(Explanation<Pose>& now, const std::vector<Index>& l
   OdometryComponent<Pose> told;
   if (odometry) {
     told = objective_.odometry(now, *found_.graph, estimate_,
-                               std::span(covariances).subspan(loops.size()));
+                               std::span(covariances).subspan(loops.size()), threads_);
   }
   now.odometry_cost = told.cost;
   now.redundancy.odometry = told.redundancy;
@@ -252,9 +238,9 @@ void Assessment<Pose>::solve(Explanation<Pose>& now, const std::vector<Index>& l
 template <class Pose>
 void Assessment<Pose>::weigh(Explanation<Pose>& now) {
   find_redundancy(now);
-  for_each_loop(now.accepted.size(), threads_, [&](Index loop) {
-    now.standings[loop] =
-        now.accepted[loop] ? accepted_standing(now, loop) : other_standing(now, loop);
+  parallel_for_each(now.accepted.size(), threads_, [&](std::size_t k) {
+    const auto loop = static_cast<Index>(k);
+    now.standings[k] = now.accepted[k] ? accepted_standing(now, loop) : other_standing(now, loop);
   });
 }
 

@@ -416,7 +416,7 @@ bool Climb<Pose>::try_with(const Change& change, double gain, const Layout* from
 
 template <class Pose>
 void Climb<Pose>::predict_runs() {
-  run_density_ = objective_.runs().log_density(assessment_.graph(), now_.scale);
+  run_density_ = objective_.runs().log_density(assessment_.graph(), now_.scale, run_.threads);
 }
 
 template <class Pose>

@@ -21,13 +21,15 @@ struct OdometryComponent {
 /// variances, at the last update of `estimate`, where the factor on all of them was `scale`. Many
 /// edges are contracted into a step, and an early one's error in heading is one in place at the
 /// step's end: each edge has the part of the step's error that its own covariance explains.
-/// `covariances` are those of the steps (Estimate::residual_covariances). O(edges).
+/// `covariances` are those of the steps (Estimate::residual_covariances). O(edges), on `threads`
+/// threads (0: all cores).
 template <class Pose>
 OdometryComponent<Pose> odometry_component(const PoseGraph<Pose>& graph,
                                            const std::vector<std::optional<Index>>& edges,
                                            const typename Pose::Tangent& shape, double scale,
                                            const ReducedGraph<Pose>& reduced,
                                            const Estimate<Pose>& estimate,
-                                           std::span<const typename Pose::Matrix> covariances);
+                                           std::span<const typename Pose::Matrix> covariances,
+                                           int threads = 1);
 
 }  // namespace isotherm::slam::detail

@@ -102,9 +102,11 @@ class Objective {
   /// `estimate` must have settled on the explanation's loops and scales, on `graph`.
   OdometryComponent<Pose> odometry(const Explanation<Pose>& explanation,
                                    const ScaledGraph<Pose>& graph, const Estimate<Pose>& estimate,
-                                   std::span<const typename Pose::Matrix> covariances) const {
+                                   std::span<const typename Pose::Matrix> covariances,
+                                   int threads = 1) const {
     return odometry_component(graph_, chain_edges_, explanation.shapes.odometry,
-                              explanation.scale.odometry, graph.reduced, estimate, covariances);
+                              explanation.scale.odometry, graph.reduced, estimate, covariances,
+                              threads);
   }
 
   /// log of the volume of relative poses that the map of odometry allows.

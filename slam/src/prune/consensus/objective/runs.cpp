@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "isotherm/base/parallel.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
 #include "prune/consensus/pairs/loop_pair.hpp"
 #include "prune/consensus/pairs/near_pairs.hpp"
@@ -32,14 +33,14 @@ Runs<Pose>::Runs(const ReducedGraph<Pose>& graph, Index window)
 
 template <class Pose>
 std::vector<double> Runs<Pose>::log_density(const ReducedGraph<Pose>& graph,
-                                            const CovarianceScale& scale) const {
+                                            const CovarianceScale& scale, int threads) const {
   const auto loops = forward_loops(graph, scale);
   std::vector<double> densities(loops.size(), 0.0);
-  for (std::size_t k = 0; k < loops.size(); ++k) {
-    if (before_[k] == kNone) continue;
+  parallel_for_each(loops.size(), threads, [&](std::size_t k) {
+    if (before_[k] == kNone) return;
     const auto [r, S] = pair_residual(graph, scale, loops[before_[k]], loops[k]);
     densities[k] = log_normal<Pose>(r, S);
-  }
+  });
   return densities;
 }
 

@@ -20,8 +20,8 @@ class Runs {
   bool copied(Index loop) const { return copied_[loop]; }
 
   /// log N(z; what the loop before predicts), one a loop; of those without one, 0.
-  std::vector<double> log_density(const ReducedGraph<Pose>& graph,
-                                  const CovarianceScale& scale) const;
+  std::vector<double> log_density(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
+                                  int threads = 1) const;
 
  private:
   std::vector<Index> before_;

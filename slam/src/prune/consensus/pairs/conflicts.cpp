@@ -8,6 +8,8 @@
 #include <Eigen/Cholesky>
 #include <nanoflann.hpp>
 
+#include "isotherm/base/parallel.hpp"
+
 namespace isotherm::slam::detail {
 namespace {
 
@@ -66,13 +68,34 @@ double pair_chi2(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
   return r.dot(Eigen::LLT<typename Pose::Matrix>(S).solve(r));
 }
 
+template <class Pose>
+std::vector<std::vector<Index>> named_in(const std::map<Chains, AcceptedLoops>& groups,
+                                         const ReducedGraph<Pose>& graph,
+                                         const CovarianceScale& scale, double gate,
+                                         const std::vector<ForwardLoop<Pose>>& loops,
+                                         const std::vector<bool>& refuted, int threads) {
+  std::vector<std::vector<Index>> conflicts(loops.size());
+  parallel_for_each(loops.size(), threads, [&](std::size_t k) {
+    const auto group = groups.find(chains_of(graph, loops[k]));
+    if (!refuted[k] || group == groups.end()) return;
+    const auto near = group->second.nearest(loops[k].from, loops[k].to);
+    auto& named = conflicts[k];
+    for (const Index other : near) {
+      if (named.size() == kNamed) break;
+      if (pair_chi2(graph, scale, loops[other], loops[k]) > gate) named.push_back(other);
+    }
+    if (named.empty()) named.assign(near.begin(), near.begin() + std::min(near.size(), kNamed));
+  });
+  return conflicts;
+}
+
 }  // namespace
 
 template <class Pose>
 std::vector<std::vector<Index>> name_conflicts(const ReducedGraph<Pose>& graph,
                                                const CovarianceScale& scale, double gate,
                                                const std::vector<bool>& accepted,
-                                               const std::vector<bool>& refuted) {
+                                               const std::vector<bool>& refuted, int threads) {
   const auto loops = forward_loops(graph, scale);
   std::map<Chains, LoopEnds> by_chains;
   for (std::size_t k = 0; k < loops.size(); ++k) {
@@ -84,28 +107,16 @@ std::vector<std::vector<Index>> name_conflicts(const ReducedGraph<Pose>& graph,
   std::map<Chains, AcceptedLoops> groups;
   for (auto& [chains, ends] : by_chains) groups.try_emplace(chains, std::move(ends));
 
-  std::vector<std::vector<Index>> conflicts(loops.size());
-  for (std::size_t k = 0; k < loops.size(); ++k) {
-    const auto group = groups.find(chains_of(graph, loops[k]));
-    if (!refuted[k] || group == groups.end()) continue;
-    const auto near = group->second.nearest(loops[k].from, loops[k].to);
-    auto& named = conflicts[k];
-    for (const Index other : near) {
-      if (named.size() == kNamed) break;
-      if (pair_chi2(graph, scale, loops[other], loops[k]) > gate) named.push_back(other);
-    }
-    if (named.empty()) named.assign(near.begin(), near.begin() + std::min(near.size(), kNamed));
-  }
-  return conflicts;
+  return named_in(groups, graph, scale, gate, loops, refuted, threads);
 }
 
 template std::vector<std::vector<Index>> name_conflicts(const ReducedGraph<Pose2>&,
                                                         const CovarianceScale&, double,
                                                         const std::vector<bool>&,
-                                                        const std::vector<bool>&);
+                                                        const std::vector<bool>&, int);
 template std::vector<std::vector<Index>> name_conflicts(const ReducedGraph<Pose3>&,
                                                         const CovarianceScale&, double,
                                                         const std::vector<bool>&,
-                                                        const std::vector<bool>&);
+                                                        const std::vector<bool>&, int);
 
 }  // namespace isotherm::slam::detail

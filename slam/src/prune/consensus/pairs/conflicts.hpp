@@ -18,6 +18,6 @@ template <class Pose>
 std::vector<std::vector<Index>> name_conflicts(const ReducedGraph<Pose>& graph,
                                                const CovarianceScale& scale, double gate,
                                                const std::vector<bool>& accepted,
-                                               const std::vector<bool>& refuted);
+                                               const std::vector<bool>& refuted, int threads = 1);
 
 }  // namespace isotherm::slam::detail
