@@ -47,15 +47,12 @@ CONSTANTS = [
     Constant("kScaleStep", "3", "of variances, from one kind of loop to the next", (2, 10)),
     Constant("kLoopsBefore", "1", "loops of either kind that count as seen before any is", (0.5, 4)),
     Constant("kReach", "3.5", "deviations to which a kernel of near pairs reaches", (2, 7)),
-    Constant("kLeastAspect", "0.05", "thickness of a flat map, which false loops leave",
-             (0.01, 0.3)),
     Constant("kFewLoops", "5", "loops of which none is pruned if there are fewer", (0, 20)),
     Constant("kLeastSample", "200", "loops that a sample holds at least", (20, 1e9)),
     Constant("kBetter", "1", "nats by which a move must be better", (0.1, 3)),
     Constant("kPatience", "8", "moves that may find nothing better", (3, 20)),
     Constant("kMoreTelling", "2", "times as many loops tell scales anew", (1, 1000)),
     Constant("kMostExpectedFalse", "0.5", "loops of a batch that may be expected false", (0.1, 5)),
-    Constant("kFalseShare", "1e-3", "the same as a share of those in force", (0, 1e-2)),
     Constant("kBatchGrowth", "10", "times as many loops as before in a batch", (3, 100)),
     Constant("kSettled", "0.01", "deviations below which a step of poses does not matter",
              (0.001, 0.1)),
@@ -191,7 +188,7 @@ def page(base, rows, cell_count):
              line_of("as they are", "", "", "", base, base, True)]
     for constant in CONSTANTS:
         model = constant.name in ("kScaleDeviation", "kScaleStep", "kLoopsBefore", "kReach",
-                                  "kLeastAspect", "kNodes")
+                                  "kNodes")
         lines += [line_of(f"`{constant.name}`", constant.meaning, constant.value, f"{value:g}",
                           rows[f"{constant.name}={value:g}"], base, not model)
                   for value in constant.tried if f"{constant.name}={value:g}" in rows]

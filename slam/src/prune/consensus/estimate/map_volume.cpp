@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
-
-#include "prune/consensus/constants.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -20,25 +17,21 @@ constexpr double rotation_volume() {
 }
 
 // A map of one point has no size; any positive one serves.
-constexpr double kLeastExtent = 1e-3;
+constexpr double kLeastSide = 1e-3;
 
 }  // namespace
 
 template <class Pose>
 MapVolume<Pose>::MapVolume(const std::vector<Pose>& poses) {
   using Translation = typename Pose::Translation;
-  Translation low = Translation::Constant(std::numeric_limits<double>::infinity());
-  Translation high = -low;
+  const auto count = static_cast<double>(std::max<std::size_t>(poses.size(), 1));
+  Translation center = Translation::Zero();
+  for (const Pose& pose : poses) center += pose.translation() / count;
+  double variance = 0.0;
   for (const Pose& pose : poses) {
-    low = low.cwiseMin(pose.translation());
-    high = high.cwiseMax(pose.translation());
+    variance += (pose.translation() - center).squaredNorm() / (count * Pose::kDim);
   }
-  Translation extent = Translation::Zero();
-  if (!poses.empty()) extent = high - low;
-  const double least = std::max(kLeastAspect * extent.maxCoeff(), kLeastExtent);
-  extent = (2.0 * extent).cwiseMax(least);
-
-  const double side = std::pow(extent.prod(), 1.0 / Pose::kDim);
+  const double side = 2.0 * std::max(std::sqrt(12.0 * variance), kLeastSide);
   const int turns = Pose::kDof - Pose::kDim;
   const double angle = std::pow(rotation_volume<Pose>(), 1.0 / turns);
   variance_.template head<Pose::kDim>().setConstant(side * side / (2.0 * kPi));

@@ -10,7 +10,8 @@ namespace isotherm::slam::detail {
 ///
 /// A normal density whose covariance M is isotropic in translation and in
 /// rotation, with |2 pi M|^(1/2) the volume that relative poses can take on the
-/// map: twice its extent a direction, and every rotation.
+/// map: twice the side of the square or cube in which positions spread as far, in
+/// every direction (false loops leave the plane of a flat map), and every rotation.
 template <class Pose>
 class MapVolume {
  public:
