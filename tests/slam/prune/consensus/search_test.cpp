@@ -139,6 +139,23 @@ TEST(Search, StartsWhereMostGainsNearTheScalesThatAreTrue) {
   }
 }
 
+// Translations and rotations of odometry as far from stated as their prior lets them.
+TEST(Search, FindsNoLessThanKnowingTheLoopsWould) {
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    Random random(seed);
+    auto made = random_loop_graph<Pose2>(random, 120, 40, 1.0);
+    for (auto& constraint : made.graph.constraints) {
+      if (constraint.to == constraint.from + 1) constraint.information(2, 2) *= 100.0;
+    }
+    const Objective<Pose2> objective(made.graph, edge_roles(made.graph), kWindow);
+    Climb<Pose2> climb(objective, kOptions, kSilent);
+    const auto found = search(climb).front();
+    climb_from_each_start(true, [&](const CovarianceScale& start) {
+      EXPECT_GE(found.evidence, climb.settled_on(found.accepted, start).evidence - kBetter);
+    });
+  }
+}
+
 TEST(Search, GivesEachPeakOnceTheBestFirst) {
   Random random(5);
   const auto made = random_loop_graph<Pose2>(random, 80, 40, 1.0);

@@ -61,6 +61,15 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole) {
   return standpoints;
 }
 
+// Scales of the loops that were found may have other peaks: sought from each start, all loops
+// known.
+template <class Pose>
+void climb_from_the_best(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
+  const Explanation<Pose> best = *std::ranges::max_element(found, {}, &Explanation<Pose>::evidence);
+  climb_from_each_start(
+      true, [&](const CovarianceScale& scale) { found.push_back(climb.from(best, scale)); });
+}
+
 }  // namespace
 
 template <class Pose>
@@ -75,7 +84,10 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb) {
     return std::ranges::all_of(
         found, [&](const auto& peak) { return peak.evidence <= climb.nothing().evidence; });
   };
-  if (astray()) climb_from_each_start(calibrate, try_from);
+  if (astray()) {
+    climb_from_each_start(calibrate, try_from);
+    if (calibrate && !astray()) climb_from_the_best(climb, found);
+  }
   if (calibrate && astray()) {
     for (const auto& start : gaining_starts(climb)) unless_it_breaks_down(try_from, start);
   }
