@@ -132,7 +132,7 @@ Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
 }
 
 template <class Pose>
-Explanation<Pose> Climb<Pose>::nothing() {
+const Explanation<Pose>& Climb<Pose>::nothing() {
   if (!nothing_) start({});
   return *nothing_;
 }

@@ -61,7 +61,7 @@ class Climb {
   Explanation<Pose> settled_on(const std::vector<bool>& accepted, const CovarianceScale& start);
 
   /// Nothing accepted, the covariances as stated.
-  Explanation<Pose> nothing();
+  const Explanation<Pose>& nothing();
 
   /// What all groups of loops that gain by themselves would gain, of nothing accepted, at each of
   /// these scales.

@@ -30,6 +30,9 @@ void keep_peaks(std::vector<Explanation<Pose>>& found) {
   found = std::move(peaks);
 }
 
+template <class Pose>
+std::vector<Explanation<Pose>> search_part(Climb<Pose>& climb, bool sampled);
+
 // As numbers of a sample say which loops of all those are.
 KnownBefore known_of(const std::vector<Index>& sampled, std::size_t all) {
   KnownBefore known{.loops = {}, .vertex = [](Index vertex) { return std::optional(vertex); }};
@@ -49,7 +52,7 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole) {
   if (sampled.size() < kLeastSample) return standpoints;
   const Objective<Pose> part = objective.of(sampled);
   Climb<Pose> climb = whole.on(part);
-  const auto found = search(climb);
+  const auto found = search_part(climb, true);
   if (accepted_by(found.front()) < kFewLoops) return standpoints;
   const double least = found.front().evidence - log_odds_of(1.0 - whole.options().significance);
   const KnownBefore known = known_of(sampled, all.loops.size());
@@ -70,10 +73,9 @@ void climb_from_the_best(Climb<Pose>& climb, std::vector<Explanation<Pose>>& fou
       true, [&](const CovarianceScale& scale) { found.push_back(climb.from(best, scale)); });
 }
 
-}  // namespace
-
+// Of all loops or of a sample, whose scales are sought again with all.
 template <class Pose>
-std::vector<Explanation<Pose>> search(Climb<Pose>& climb) {
+std::vector<Explanation<Pose>> search_part(Climb<Pose>& climb, bool sampled) {
   const bool calibrate = climb.options().calibrate;
   std::vector<Explanation<Pose>> found;
   const auto try_from = [&](const auto& start) { found.push_back(climb.from(start)); };
@@ -86,7 +88,7 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb) {
   };
   if (astray()) {
     climb_from_each_start(calibrate, try_from);
-    if (calibrate && !astray()) climb_from_the_best(climb, found);
+    if (calibrate && !sampled && !astray()) climb_from_the_best(climb, found);
   }
   if (calibrate && astray()) {
     for (const auto& start : gaining_starts(climb)) unless_it_breaks_down(try_from, start);
@@ -94,6 +96,13 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb) {
   found.push_back(climb.nothing());
   keep_peaks(found);
   return found;
+}
+
+}  // namespace
+
+template <class Pose>
+std::vector<Explanation<Pose>> search(Climb<Pose>& climb) {
+  return search_part(climb, false);
 }
 
 template std::vector<Explanation<Pose2>> search(Climb<Pose2>&);
