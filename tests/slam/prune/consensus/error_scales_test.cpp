@@ -53,13 +53,6 @@ TEST(ScaleMixture, GoesAsFarAsTheFileStates) {
   EXPECT_EQ(std::exp(nearer.log_share[3]), 0.0);
 }
 
-TEST(ScaleMixture, LetsNoCoordinateBeLessAccurateThanTheFileStates) {
-  const double scale = 1e-5;
-  const double widest = 20.0;
-  EXPECT_DOUBLE_EQ(scale * widest * expected_mixture(scale, {}, widest).relative.back(), 1.0);
-  EXPECT_EQ(std::exp(expected_mixture(0.1, {}, widest).log_share[3]), 0.0);
-}
-
 TEST(ErrorScale, BoundsTheLogOfTheMixtureTightly) {
   constexpr int kDof = 3;
   const auto mixture = expected_mixture(0.01, {{9.0, 0.0, 1.0}});

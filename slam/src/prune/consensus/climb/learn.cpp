@@ -129,14 +129,14 @@ ScaleShares weigh(const ScaleMixture& mixture, std::vector<Residual<Pose>>& resi
 
 // The likeliest, and residuals weighed by them, at a scale of most that is learnt with them.
 template <class Pose>
-ScaleShares likeliest_from(const ScaleShift& start, double scale, double widest,
+ScaleShares likeliest_from(const ScaleShift& start, double scale,
                            std::vector<Residual<Pose>>& residuals) {
   ScaleShares shares = start.shares;
   double log_scale = std::log(scale * start.factor);
   double redundancy = 0.0;
   for (const auto& residual : residuals) redundancy += residual.redundancy;
   for (int k = 0; k < kRepetitions; ++k) {
-    shares = weigh(expected_mixture(std::exp(log_scale), shares, widest), residuals);
+    shares = weigh(expected_mixture(std::exp(log_scale), shares), residuals);
     double cost = 0.0;
     for (const auto& residual : residuals) cost += residual.weight * residual.chi2();
     log_scale = std::clamp(drawn_in(cost, redundancy), -kMostScale, kMostScale);
@@ -196,7 +196,7 @@ Lesson<Pose> of_loops(const ScaleShift& start, const Explanation<Pose>& explanat
   const double scale = explanation.scale.loops;
   const Tangent& shape = explanation.shapes.loops;
   const Tangent& redundancy = explanation.redundancy.loops;
-  lesson.shares = likeliest_from(start, scale, shape.maxCoeff(), residuals);
+  lesson.shares = likeliest_from(start, scale, residuals);
   Tangent cost = Tangent::Zero();
   for (const auto& residual : residuals) cost += residual.weight * residual.parts;
   const Component<Tangent> loops{cost.cwiseProduct(shape), redundancy};
@@ -207,8 +207,7 @@ Lesson<Pose> of_loops(const ScaleShift& start, const Explanation<Pose>& explanat
                  0.5 * redundancy.dot(now - before);
   const Tangent change = lesson.shapes.loops.cwiseQuotient(shape);
   for (auto& residual : residuals) residual.parts = residual.parts.cwiseQuotient(change);
-  const double widest = lesson.shapes.loops.maxCoeff();
-  const auto mixture = [&] { return expected_mixture(lesson.scale.loops, lesson.shares, widest); };
+  const auto mixture = [&] { return expected_mixture(lesson.scale.loops, lesson.shares); };
   lesson.shares = weigh(mixture(), residuals);
   lesson.gain += log_likelihood(mixture(), residuals);
   return lesson;

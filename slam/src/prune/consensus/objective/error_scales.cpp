@@ -57,9 +57,8 @@ ScaleShift all_as_worst(const ScaleShares& shares) {
 }
 
 // What the file states is a scale of its own only beyond the worst of the others.
-ScaleMixture expected_mixture(double scale, const ScaleShares& shares, double widest) {
-  const double stated = 1.0 / (scale * widest);
-  ScaleMixture mixture{.scale = scale, .relative = {1.0, kScaleStep, kWorst, stated}};
+ScaleMixture expected_mixture(double scale, const ScaleShares& shares) {
+  ScaleMixture mixture{.scale = scale, .relative = {1.0, kScaleStep, kWorst, 1.0 / scale}};
   ByScale expected = kPriorLoops;
   for (std::size_t j = 0; j < kScaleCount; ++j) expected[j] += shares.loops[j];
   const double all = sum_of(expected);

@@ -64,9 +64,7 @@ struct ScaleMixture {
   double share_of_worse() const;
 };
 
-/// `widest` is the largest factor of a coordinate's variance beside `scale`: in none is a loop that
-/// is "as stated" less accurate than stated.
-ScaleMixture expected_mixture(double scale, const ScaleShares& shares, double widest = 1.0);
+ScaleMixture expected_mixture(double scale, const ScaleShares& shares);
 
 /// From log densities at each scale, of any common factor.
 ErrorScale error_scale(const ScaleMixture& mixture, const ByScale& log_density, double dof);

@@ -41,9 +41,7 @@ struct Explanation {
   double evidence = 0.0;            ///< Objective::evidence()
 
   /// What is expected of how accurate the next loop is.
-  ScaleMixture mixture() const {
-    return expected_mixture(scale.loops, shares, shapes.loops.maxCoeff());
-  }
+  ScaleMixture mixture() const { return expected_mixture(scale.loops, shares); }
 };
 
 /// The log evidence of an explanation: of the accepted set A and the scales,
