@@ -16,7 +16,7 @@ double volume_of(const std::vector<Pose>& poses) {
   return std::sqrt((2.0 * std::numbers::pi * variance).prod());
 }
 
-// Evenly over [0, length]^2 in the plane z = 0 of Pose3, or in that of Pose2.
+// Evenly over a square of that length, `turned` about its corner.
 std::vector<Pose2> square_of(double length, double turned) {
   constexpr int kSide = 100;
   std::vector<Pose2> poses;
@@ -47,6 +47,12 @@ TEST(MapVolume, GoesAsFarOutOfTheFloorOfAFlatMap) {
   const double side = 2.0 * 50.0 * std::sqrt(2.0 / 3.0);
   EXPECT_NEAR(volume_of(floor), std::pow(side, 3.0) * rotations,
               1e-3 * std::pow(side, 3.0) * rotations);
+}
+
+TEST(MapVolume, ThinMapsHaveSomeThickness) {
+  const std::vector<Pose3> line = {Pose3(),
+                                   Pose3({10.0, 0.0, 0.0}, Eigen::Quaterniond::Identity())};
+  EXPECT_GT(volume_of(line), 20.0 * 0.1 * 0.1);
 }
 
 TEST(MapVolume, MapsWithoutExtentAreAllowed) {

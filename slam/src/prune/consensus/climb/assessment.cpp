@@ -189,18 +189,15 @@ template <class Pose>
 void Assessment<Pose>::predict(Explanation<Pose>& now) {
   const bool alone = std::ranges::count(now.accepted, true) == 0 && found_.graph->is_forest();
   now.standings.resize(now.accepted.size());
-  const auto is_solved = [&](Index loop) {
-    const auto [first, second] = estimate_.parts(graph().loops[loop]);
-    return !alone && first == second;
-  };
-  parallel_for_each(now.accepted.size(), threads_, [&](std::size_t k) {
-    const auto loop = static_cast<Index>(k);
-    if (!is_solved(loop)) found_.covariances[k] = odometry_says(loop, now.scale.odometry);
-  });
   std::vector<Index> solved;
+  std::vector<Index> composed;
   for (Index loop = 0; loop < static_cast<Index>(now.accepted.size()); ++loop) {
-    if (is_solved(loop)) solved.push_back(loop);
+    const auto [first, second] = estimate_.parts(graph().loops[loop]);
+    (!alone && first == second ? solved : composed).push_back(loop);
   }
+  parallel_for_each(composed.size(), threads_, [&](std::size_t i) {
+    found_.covariances[composed[i]] = odometry_says(composed[i], now.scale.odometry);
+  });
   solve(now, solved, !alone);
   found_.held.assign(now.accepted.size(), 0.0);
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {

@@ -10,6 +10,7 @@
 #include "isotherm/base/statistics.hpp"
 #include "prune/consensus/constants.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
+#include "prune/consensus/objective/log_sum.hpp"
 #include "prune/consensus/pairs/loop_pair.hpp"
 
 namespace isotherm::slam::detail {
@@ -91,7 +92,7 @@ double NearDensity<Pose>::log_false_density(const Pose& measured) const {
   const double nearer = wide.squaredNorm() - wide.cwiseProduct(narrower_).squaredNorm();
   const double more = narrower_.array().log().sum() + 0.5 * nearer;  // log of normal over wide
   return inverse_deviation_.array().log().sum() - 0.5 * Pose::kDof * kLog2Pi - std::log(2.0) +
-         std::max(more, 0.0) + std::log1p(std::exp(-std::abs(more)));
+         log_sum(more, 0.0);
 }
 
 template <class Pose>
