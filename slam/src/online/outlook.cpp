@@ -131,15 +131,16 @@ Standing Outlook<Pose>::standing(Index edge) const {
   auto path = steps(from, to, false);
   const auto& best = map_.best();
   const auto& assessment = map_.assessment();
-  const Matrix Sigma = covariance_of(measured);
+  const Matrix learnt = covariance_of(measured);
+  const Matrix stated = covariance_from_information<Pose::kDof>(measured.information);
   Standing standing{.parts = {0, 0}};
   double density = -map_.objective().log_volume();
   if (!path && a && b && a->part == b->part) path = between(*a, *b);
   if (path) {
     const typename Pose::Tangent r = (measured.T_from_to.inverse() * path->T).log();
     const Matrix J = residual_jacobian<Pose>(r);
-    const auto prediction = predict<Pose>(r, J * path->covariance * J.transpose(), Sigma);
-    const auto gain = loop_gain<Pose>(prediction, assessment.findings().mixture,
+    const auto gain = loop_gain<Pose>({r, J * path->covariance * J.transpose()}, {learnt, stated},
+                                      assessment.findings().mixture,
                                       map_.objective().scale_deviation(best.redundancy));
     standing.chi2 = gain.chi2;
     density = gain.log_density;

@@ -48,6 +48,11 @@ class NormalEquations {
   /// Takes measurements and their information from the same graph with other ones.
   void measure(const PoseGraph<Pose>& graph) { edges_ = edges_of(graph, gauge_); }
 
+  /// Takes other information of one constraint.
+  void inform(Index constraint, const typename Pose::Matrix& information) {
+    edges_[constraint].information = information;
+  }
+
   const Gauge& gauge() const noexcept { return gauge_; }
   Index constraint_count() const noexcept { return static_cast<Index>(edges_.size()); }
 

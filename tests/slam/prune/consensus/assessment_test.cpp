@@ -27,7 +27,7 @@ class AssessmentOf : public testing::Test {
     for (const int count : counts) {
       Explanation<Pose> now{.accepted = std::vector<bool>(kLoops, false)};
       std::fill_n(now.accepted.begin(), count, true);
-      now.weights.assign(kLoops, 1.0);
+      now.weights.resize(kLoops);
       assessment.assess(now);
       last_ = assessment.findings().near;
     }
@@ -40,7 +40,7 @@ class AssessmentOf : public testing::Test {
                               const ScaleShares& shares = {}) {
     Explanation<Pose> now{
         .accepted = std::vector<bool>(kLoops, false), .scale = {1.0, scale}, .shares = shares};
-    now.weights.assign(kLoops, 1.0);
+    now.weights.resize(kLoops);
     assessment.assess(now);
     std::fill_n(now.accepted.begin(), count, true);
     assessment.assess(now);
@@ -62,7 +62,7 @@ void expect_settled_standings(std::uint64_t seed) {
   const Objective<Pose> objective(graph, edge_roles(graph), 20);
   Assessment<Pose> assessment(objective);
   Explanation<Pose> now{.accepted = std::vector<bool>(8, true), .scale = {1e4, 1e-3}};
-  now.weights.assign(8, 1.0);
+  now.weights.resize(8);
   assessment.assess(now);
   const auto standings = now.standings;
   for (int again = 0; again < 3; ++again) assessment.assess(now);
@@ -107,12 +107,13 @@ TYPED_TEST(AssessmentOf, WeighsLoopsAsTheOthersSay) {
     Assessment<Pose> without(this->objective_);
     without.assess(others);
     const auto& found = without.findings();
-    const auto prediction = predict<Pose>(without.estimate().residual(graph.loops[k]),
-                                          found.covariances[k], graph.loops[k].covariance);
-    const auto gain = loop_gain<Pose>(prediction, found.mixture,
-                                      this->objective_.scale_deviation(others.redundancy));
-    EXPECT_NEAR(now.standings[k].weight, gain.weight, 0.05) << k;  // the others settle anew
-    EXPECT_LT(gain.weight, 1.0) << k;
+    const Belief<Pose> belief{without.estimate().residual(graph.loops[k]), found.covariances[k]};
+    const auto gain =
+        loop_gain<Pose>(belief, {graph.loops[k].covariance, graph.loops[k].covariance},
+                        found.mixture, this->objective_.scale_deviation(others.redundancy));
+    // The others settle anew.
+    EXPECT_NEAR(now.standings[k].weight.learnt, gain.weight.learnt, 0.05) << k;
+    EXPECT_LT(gain.weight.learnt, 1.0) << k;
   }
 }
 

@@ -48,6 +48,7 @@ TEST(ScaleShares, CountLoopsAsOfDifferentScalesFromOneStepOn) {
 
 TEST(ScaleMixture, GoesAsFarAsTheFileStates) {
   EXPECT_DOUBLE_EQ(expected_mixture(1e-5, {}).relative.back() * 1e-5, 1.0);
+  EXPECT_TRUE(expected_mixture(0.2, {}, 0.5).has(kAsStated)) << "in a coordinate";
   const auto nearer = expected_mixture(0.2, {{6.0, 2.0, 0.0, 0.0}});
   EXPECT_NEAR(std::exp(nearer.log_share[2]), 2.0 / 30.0, 1e-12) << "stated counts among the worst";
   EXPECT_EQ(std::exp(nearer.log_share[3]), 0.0);
@@ -57,23 +58,32 @@ TEST(ErrorScale, BoundsTheLogOfTheMixtureTightly) {
   constexpr int kDof = 3;
   const auto mixture = expected_mixture(0.01, {{9.0, 0.0, 1.0}});
   for (const double chi2 : {0.0, 3.0, 30.0, 300.0}) {
-    const auto scale = error_scale(mixture, chi2, kDof);
-    double bound = scale.evidence - 0.5 * scale.weight * chi2;
-    double density = 0.0;
-    for (std::size_t j = 0; j < kScaleCount; ++j) {
-      bound += scale.probability[j] * mixture.log_share[j];
-      density += std::exp(mixture.log_share[j] - 0.5 * chi2 / mixture.relative[j]) /
-                 std::pow(mixture.relative[j], 0.5 * kDof);
+    for (const double stated : {0.0, 0.01 * chi2, 0.3 * chi2}) {
+      const auto scale = error_scale(mixture, Misfit{chi2, stated, kDof, 11.0});
+      double bound =
+          scale.evidence - 0.5 * (scale.weight.learnt * chi2 + scale.weight.stated * stated);
+      double density = std::exp(mixture.log_share[kAsStated] - 0.5 * (11.0 + stated));
+      for (std::size_t j = 0; j < kScaleCount; ++j) {
+        bound += scale.probability[j] * mixture.log_share[j];
+        if (j == kAsStated) continue;
+        density += std::exp(mixture.log_share[j] - 0.5 * chi2 / mixture.relative[j]) /
+                   std::pow(mixture.relative[j], 0.5 * kDof);
+      }
+      EXPECT_NEAR(bound, std::log(density), 1e-9) << chi2 << " " << stated;
     }
-    EXPECT_NEAR(bound, std::log(density), 1e-9) << chi2;
   }
 }
 
 TEST(ErrorScale, WeighsALoopLessTheFartherOutItIs) {
   const auto mixture = expected_mixture(0.01, {{99.0, 0.0, 1.0}});
-  EXPECT_NEAR(error_scale(mixture, 1.0, 3.0).weight, 1.0, 0.01);
-  EXPECT_NEAR(error_scale(mixture, 30.0, 3.0).weight, 1.0 / 9.0, 0.05);
-  EXPECT_NEAR(error_scale(mixture, 1000.0, 3.0).weight, 0.01, 1e-6);
+  // Stated covariances are a hundred times those of most.
+  const auto factor = [&](double chi2) {
+    const Misfit misfit{chi2, 0.01 * chi2, 3.0, 3.0 * std::log(100.0)};
+    return mixture.factor(error_scale(mixture, misfit).weight);
+  };
+  EXPECT_NEAR(factor(1.0), 1.0, 0.01);
+  EXPECT_NEAR(factor(30.0), 1.0 / 9.0, 0.05);
+  EXPECT_NEAR(factor(1000.0), 0.01, 1e-6);
 }
 
 template <class Pose>
@@ -95,14 +105,15 @@ TYPED_TEST(LoopGainOf, IsTheLogDensityOfTheMixture) {
     typename Pose::Tangent r;
     for (double& entry : r) entry = 0.1 * random.normal();
     const Matrix P = spread(0.05);
-    const Matrix Sigma = spread(0.1);
+    const Matrix learnt = spread(0.1);
+    const Matrix stated = spread(0.2);
     const auto mixture = expected_mixture(0.04, {{5.0, 1.0, 2.0}});
-    double density = 0.0;
-    for (std::size_t j = 0; j < kScaleCount; ++j) {
-      const Matrix S = P + mixture.scale * mixture.relative[j] * Sigma;
+    double density = std::exp(mixture.log_share[kAsStated] + log_normal<Pose>(r, P + stated));
+    for (std::size_t j = 0; j < kAsStated; ++j) {
+      const Matrix S = P + mixture.scale * mixture.relative[j] * learnt;
       density += std::exp(mixture.log_share[j] + log_normal<Pose>(r, S));
     }
-    const auto gain = loop_gain<Pose>(predict<Pose>(r, P, Sigma), mixture);
+    const auto gain = loop_gain<Pose>({r, P}, {learnt, stated}, mixture);
     EXPECT_NEAR(gain.log_density, std::log(density), 1e-8);
   }
 }
@@ -115,7 +126,6 @@ TYPED_TEST(LoopGainOf, IntegratesOverScalesThatAreNotKnown) {
   const Matrix P = 0.01 * Matrix::Identity();
   const Matrix Sigma = 0.02 * Matrix::Identity();
   const auto mixture = expected_mixture(0.5, {{3.0, 1.0, 0.0}});
-  const auto prediction = predict<Pose>(r, P, Sigma);
   const CovarianceScale deviation = {1.2, 0.8};
   constexpr double kStep = 0.1;
   double sum = 0.0;
@@ -132,8 +142,8 @@ TYPED_TEST(LoopGainOf, IntegratesOverScalesThatAreNotKnown) {
       }
     }
   }
-  EXPECT_NEAR(loop_gain<Pose>(prediction, mixture, deviation).log_density, std::log(sum / all),
-              0.05);
+  EXPECT_NEAR(loop_gain<Pose>({r, P}, {Sigma, Sigma}, mixture, deviation).log_density,
+              std::log(sum / all), 0.05);
 }
 
 // By matrices: the information of the loop is taken away from that of all.
@@ -141,15 +151,13 @@ TYPED_TEST(LoopGainOf, TakesTheLoopOutOfWhatAllSay) {
   using Pose = TypeParam;
   using Matrix = typename Pose::Matrix;
   const typename Pose::Tangent r = Pose::Tangent::Constant(0.01);
-  const Matrix Sigma = 0.5 * Matrix::Identity() + 0.1 * Matrix::Ones();
   const Matrix others = 0.3 * Matrix::Identity() + 0.2 * Matrix::Ones();
-  constexpr double kPrecision = 2.5;
-  const Matrix all = (others.inverse() + kPrecision * Sigma.inverse()).inverse();
-  const auto prediction = predict_without<Pose>(r, all, Sigma, kPrecision);
-  const auto gain = loop_gain<Pose>(prediction, expected_mixture(1.0, {{1e12, 0.0, 0.0}}));
+  const Matrix Omega = (0.4 * Matrix::Identity() + 0.1 * Matrix::Ones()).inverse();
+  const Matrix all = (others.inverse() + Omega).inverse();
+  const auto left = without<Pose>({r, all}, Omega);
+  EXPECT_TRUE(left.P.isApprox(others, 1e-12));
   // The residual is fitted by all of them: without the loop it is (1 - gain)^-1 as long.
-  const typename Pose::Tangent out = others * all.inverse() * r;
-  EXPECT_NEAR(gain.log_density, log_normal<Pose>(out, Sigma + others), 1e-9);
+  EXPECT_TRUE(left.r.isApprox(others * all.inverse() * r, 1e-12));
 }
 
 }  // namespace

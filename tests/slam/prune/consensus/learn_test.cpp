@@ -23,7 +23,7 @@ class LessonOf : public testing::Test {
                            const ScaleShares& shares) const {
     Explanation<Pose> now{.accepted = std::vector<bool>(kLoops, true), .scale = scale};
     now.shares = shares;
-    now.weights.assign(kLoops, 1.0);
+    now.weights.resize(kLoops);
     assessment.assess(now);
     return now;
   }

@@ -71,7 +71,6 @@ double dense_log_likelihood(const ReducedGraph<Pose>& graph, const CovarianceSca
 template <class Pose>
 double evidence_of(const Objective<Pose>& objective, Estimate<Pose>& estimate,
                    Explanation<Pose>& explanation) {
-  estimate.weigh_loops(explanation.weights);
   estimate.update(explanation.accepted, explanation.scale, 10);
   return objective.evidence(explanation, objective.stated(), estimate,
                             objective.near(estimate.poses()));
@@ -88,7 +87,7 @@ TYPED_TEST(ObjectiveOf, IsTheMarginalLikelihoodOfTheLoops) {
   for (const CovarianceScale scale : {CovarianceScale{1.0, 1.0}, CovarianceScale{3.0, 0.2}}) {
     Estimate<Pose> estimate(reduced);
     Explanation<Pose> none{.accepted = std::vector<bool>(loops, false), .scale = scale};
-    none.weights.assign(loops, 1.0);
+    none.weights.resize(loops);
     Explanation<Pose> all = none;
     all.accepted.assign(loops, true);
     const double without = evidence_of(objective, estimate, none);
@@ -112,7 +111,7 @@ TYPED_TEST(ObjectiveOf, RisesByWhatALoopGains) {
   const auto& reduced = objective.stated().reduced;
   const std::size_t loops = reduced.loops.size();
   Explanation<Pose> all{.accepted = std::vector<bool>(loops, true)};
-  all.weights.assign(loops, 1.0);
+  all.weights.resize(loops);
   Explanation<Pose> but_first = all;
   but_first.accepted[0] = false;
   Estimate<Pose> estimate(reduced);
@@ -120,14 +119,16 @@ TYPED_TEST(ObjectiveOf, RisesByWhatALoopGains) {
   const std::vector<const Link<Pose>*> first = {&link};
 
   const double without = evidence_of(objective, estimate, but_first);
-  const auto predicted = predict<Pose>(estimate.residual(link),
-                                       estimate.residual_covariances(first)[0], link.covariance);
+  const auto belief = [&] {
+    return Belief<Pose>{estimate.residual(link), estimate.residual_covariances(first)[0]};
+  };
+  const auto others = belief();
   const double with = evidence_of(objective, estimate, all);
-  const auto held_out = predict_without<Pose>(
-      estimate.residual(link), estimate.residual_covariances(first)[0], link.covariance, 1.0);
+  const auto held_out = isotherm::slam::detail::without<Pose>(belief(), link.information);
   const ScaleMixture as_most = expected_mixture(1.0, {{1e12, 0.0, 0.0}});
-  const double gain = loop_gain<Pose>(predicted, as_most).log_density;
-  EXPECT_NEAR(loop_gain<Pose>(held_out, as_most).log_density, gain, 0.05);
+  const OwnError<Pose> own{link.covariance, link.covariance};
+  const double gain = loop_gain<Pose>(others, own, as_most).log_density;
+  EXPECT_NEAR(loop_gain<Pose>(held_out, own, as_most).log_density, gain, 0.05);
 
   const auto near = objective.near(estimate.poses());
   // All of n against a given n - 1 of n by the Beta-binomial: n to 1.

@@ -43,7 +43,7 @@ Explanation<Pose> everything_at(const Objective<Pose>& objective,
                                 const typename Pose::Tangent& logs) {
   const std::size_t loops = objective.stated().reduced.loops.size();
   Explanation<Pose> all{.accepted = std::vector<bool>(loops, true)};
-  all.weights.assign(loops, 1.0);
+  all.weights.resize(loops);
   all.scale.odometry = std::exp(logs.mean());
   all.shapes.odometry = (logs.array() - logs.mean()).exp();
   return all;

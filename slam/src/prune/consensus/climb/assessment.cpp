@@ -8,7 +8,6 @@
 #include "isotherm/base/parallel.hpp"
 #include "prune/consensus/constants.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
-#include "prune/consensus/objective/loop_gain.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -118,7 +117,7 @@ void Assessment<Pose>::rescale(const Shapes<Pose>& shapes) {
 template <class Pose>
 void Assessment<Pose>::find_peak(Explanation<Pose>& now) {
   weigh_new(now);
-  estimate_.weigh_loops(now.weights);
+  inform(now);
   bool believed = false;
   estimate_.settle(now.accepted, now.scale, kMostSteps,
                    [&] { return reweigh(now, !std::exchange(believed, true)); });
@@ -128,12 +127,19 @@ void Assessment<Pose>::find_peak(Explanation<Pose>& now) {
 template <class Pose>
 void Assessment<Pose>::weigh_new(Explanation<Pose>& now) {
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
-    if (!now.accepted[k] || found_.held.empty() || found_.held[k] > 0.0) continue;
-    const auto& link = graph().loops[k];
-    const auto prediction =
-        detail::predict<Pose>(estimate_.residual(link), found_.covariances[k], link.covariance);
-    now.weights[k] = loop_gain<Pose>(prediction, found_.mixture).weight;
+    if (!now.accepted[k] || found_.held.empty() || !found_.held[k].isZero(0.0)) continue;
+    const auto loop = static_cast<Index>(k);
+    now.weights[k] = loop_gain<Pose>(belief(loop), own_error(loop), found_.mixture).weight;
   }
+}
+
+template <class Pose>
+void Assessment<Pose>::inform(const Explanation<Pose>& now) {
+  std::vector<Matrix> all(now.accepted.size(), Matrix::Zero());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (now.accepted[k]) all[k] = information(now, static_cast<Index>(k));
+  }
+  estimate_.weigh_loops(std::move(all));
 }
 
 // Whether weights changed, by so much as matters or `anyway`. Else all stay those that the factor
@@ -143,17 +149,14 @@ template <class Pose>
 bool Assessment<Pose>::reweigh(Explanation<Pose>& now, bool anyway) {
   double change = 0.0;
   double count = 0.0;
-  std::vector<double> weights = now.weights;
+  std::vector<LoopWeight> weights = now.weights;
   ScaleShares found;
   double evidence = 0.0;
+  const ScaleMixture& mixture = found_.mixture;
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
     if (!now.accepted[k]) continue;
-    const auto& link = graph().loops[k];
-    const typename Pose::Tangent r = estimate_.residual(link);
-    const double chi2 =
-        r.dot(link.information * r) / now.scale.loops + uncertainty(now, static_cast<Index>(k));
-    const ErrorScale scale = error_scale(found_.mixture, chi2, Pose::kDof);
-    const double step = std::log(scale.weight / now.weights[k]);
+    const ErrorScale scale = error_scale(mixture, misfit(now, static_cast<Index>(k)));
+    const double step = std::log(mixture.factor(scale.weight) / mixture.factor(now.weights[k]));
     change += step * step;
     count += 1.0;
     weights[k] = scale.weight;
@@ -164,23 +167,33 @@ bool Assessment<Pose>::reweigh(Explanation<Pose>& now, bool anyway) {
   now.weights = std::move(weights);
   now.found = found;
   now.scale_evidence = evidence;
-  estimate_.weigh_loops(now.weights);
+  inform(now);
   return change > 0.0;
 }
 
-// What is expected of the squared length of the error beyond that at the peak, in deviations: P is
-// its covariance with the loop's information times `held` (0 where it is new); now it is times q.
 template <class Pose>
-double Assessment<Pose>::uncertainty(const Explanation<Pose>& now, Index loop) const {
+Misfit Assessment<Pose>::misfit(const Explanation<Pose>& now, Index loop) const {
   const auto& link = graph().loops[loop];
-  const Matrix P = link.information * found_.covariances[loop];
-  const double held = found_.held.empty() ? 0.0 : found_.held[loop];
-  const double more = now.weights[loop] / now.scale.loops - held;
-  const double most = Pose::kDof / now.weights[loop];  // where nothing else is known
-  if (more == 0.0) return std::min(P.trace() / now.scale.loops, most);
-  const Matrix share = (Matrix::Identity() + more * P).partialPivLu().solve(P);
-  const double left = share.trace() / now.scale.loops;
-  return left >= 0.0 ? std::min(left, most) : most;
+  const typename Pose::Tangent r = estimate_.residual(link);
+  const Matrix expected = r * r.transpose() + uncertainty(now, loop);
+  return {.chi2 = link.information.cwiseProduct(expected).sum() / now.scale.loops,
+          .stated = stated_information(loop).cwiseProduct(expected).sum(),
+          .dof = Pose::kDof,
+          .log_stated = -Pose::kDof * std::log(now.scale.loops)};
+}
+
+// The covariance of a loop's residual, by that with the information it was held with (0 where it
+// is new). It is Omega^-1 where nothing else is known, and more nowhere.
+template <class Pose>
+typename Pose::Matrix Assessment<Pose>::uncertainty(const Explanation<Pose>& now,
+                                                    Index loop) const {
+  const Matrix& P = found_.covariances[loop];
+  const Matrix Omega = information(now, loop);
+  const Matrix more = found_.held.empty() ? Omega : Matrix(Omega - found_.held[loop]);
+  const Matrix left =
+      more.isZero(0.0) ? P : Matrix((Matrix::Identity() + P * more).partialPivLu().solve(P));
+  const double share = Omega.cwiseProduct(left).sum();
+  return share >= 0.0 && share <= Pose::kDof ? left : Matrix(Omega.inverse());
 }
 
 // Covariances of the loops whose ends are joined. Where nothing is accepted and odometry does not
@@ -199,9 +212,9 @@ void Assessment<Pose>::predict(Explanation<Pose>& now) {
     found_.covariances[composed[i]] = odometry_says(composed[i], now.scale.odometry);
   });
   solve(now, solved, !alone);
-  found_.held.assign(now.accepted.size(), 0.0);
+  found_.held.assign(now.accepted.size(), Matrix::Zero());
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
-    if (now.accepted[k]) found_.held[k] = now.weights[k] / now.scale.loops;
+    if (now.accepted[k]) found_.held[k] = information(now, static_cast<Index>(k));
   }
 }
 
@@ -244,9 +257,8 @@ void Assessment<Pose>::weigh(Explanation<Pose>& now) {
 template <class Pose>
 typename Pose::Tangent Assessment<Pose>::redundancy(const Explanation<Pose>& now,
                                                     Index loop) const {
-  const auto& link = graph().loops[loop];
-  const Matrix fitted = link.information * found_.covariances[loop];
-  return (1.0 - now.weights[loop] / now.scale.loops * fitted.diagonal().array()).max(0.0);
+  const Matrix fitted = information(now, loop) * found_.covariances[loop];
+  return (1.0 - fitted.diagonal().array()).max(0.0);
 }
 
 template <class Pose>
@@ -254,22 +266,21 @@ void Assessment<Pose>::find_redundancy(Explanation<Pose>& now) const {
   now.redundancy.loops.setZero();
   for (std::size_t k = 0; k < now.accepted.size(); ++k) {
     if (!now.accepted[k] || graph().loops[k].a == graph().loops[k].b) continue;
-    now.redundancy.loops += redundancy(now, static_cast<Index>(k));
+    now.redundancy.loops += (1.0 - now.weights[k].stated) * redundancy(now, static_cast<Index>(k));
   }
 }
 
 // Given all loops but itself, in what is known of the accuracy of odometry, too.
 template <class Pose>
 Standing Assessment<Pose>::accepted_standing(const Explanation<Pose>& now, Index loop) const {
-  const auto& link = graph().loops[loop];
-  const auto prediction =
-      predict_without<Pose>(estimate_.residual(link), found_.covariances[loop], link.covariance,
-                            now.weights[loop] / now.scale.loops);
+  const auto others = without(belief(loop), information(now, loop));
   const typename Pose::Tangent own = redundancy(now, loop);
-  const Redundancy<Pose> others{
+  const double learnt = 1.0 - now.weights[loop].stated;
+  const Redundancy<Pose> told{
       .odometry = (now.redundancy.odometry.array() - (1.0 - own.array())).max(0.0),
-      .loops = (now.redundancy.loops - own).cwiseMax(0.0)};
-  const auto gain = loop_gain<Pose>(prediction, found_.mixture, objective_.scale_deviation(others));
+      .loops = (now.redundancy.loops - learnt * own).cwiseMax(0.0)};
+  const auto gain =
+      loop_gain(others, own_error(loop), found_.mixture, objective_.scale_deviation(told));
   // Alone it would join parts that lie anywhere on the map.
   const double density = std::max(gain.log_density, -objective_.log_volume() - 0.5 * gain.chi2);
   return {.chi2 = gain.chi2, .evidence = density - log_alternative(loop), .weight = gain.weight};
@@ -281,10 +292,8 @@ Standing Assessment<Pose>::other_standing(const Explanation<Pose>& now, Index lo
   Standing standing{.parts = estimate_.parts(link)};
   double density = -objective_.log_volume();
   if (standing.connected()) {
-    const auto prediction =
-        detail::predict<Pose>(estimate_.residual(link), found_.covariances[loop], link.covariance);
-    const auto gain =
-        loop_gain<Pose>(prediction, found_.mixture, objective_.scale_deviation(now.redundancy));
+    const auto gain = loop_gain(belief(loop), own_error(loop), found_.mixture,
+                                objective_.scale_deviation(now.redundancy));
     standing.chi2 = gain.chi2;
     density = gain.log_density;
   }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "prune/consensus/objective/loop_gain.hpp"
 #include "prune/consensus/objective/objective.hpp"
 #include "prune/consensus/objective/standing.hpp"
 
@@ -54,8 +55,8 @@ class Assessment {
     typename Objective<Pose>::NearByClass near{};
     std::optional<std::size_t> near_of;  // loops that were accepted then; none: to be found anew
     std::vector<Matrix> covariances;     // of residuals, one a loop; with it where it is accepted
-    // Factors on the information of the loops that the covariances are given; none where empty.
-    std::vector<double> held;
+    // Information of the loops that the covariances are given; none where empty.
+    std::vector<Matrix> held;
   };
   const Findings& findings() const noexcept { return found_; }
 
@@ -74,8 +75,13 @@ class Assessment {
 
   const ReducedGraph<Pose>& graph() const noexcept { return found_.graph->reduced; }
 
+  /// By what the file states.
+  const Matrix& stated_information(Index loop) const {
+    return objective_.stated().reduced.loops[loop].information;
+  }
+
   /// How much of each coordinate of an accepted loop is left to tell how accurate it is:
-  /// diag(I - w Omega P), P the residual's covariance.
+  /// diag(I - Omega P), Omega its mean information, P the residual's covariance.
   typename Pose::Tangent redundancy(const Explanation<Pose>& now, Index loop) const;
 
   /// log of the density that a loop's is held against.
@@ -90,7 +96,18 @@ class Assessment {
   double ceiling(Explanation<Pose>& now) const;
   double evidence(const Explanation<Pose>& now) const;
   bool reweigh(Explanation<Pose>& now, bool anyway);
-  double uncertainty(const Explanation<Pose>& now, Index loop) const;
+  Matrix information(const Explanation<Pose>& now, Index loop) const {
+    return objective_.information(now, *found_.graph, loop);
+  }
+  void inform(const Explanation<Pose>& now);
+  Matrix uncertainty(const Explanation<Pose>& now, Index loop) const;
+  Misfit misfit(const Explanation<Pose>& now, Index loop) const;
+  Belief<Pose> belief(Index loop) const {
+    return {estimate_.residual(graph().loops[loop]), found_.covariances[loop]};
+  }
+  OwnError<Pose> own_error(Index loop) const {
+    return {graph().loops[loop].covariance, objective_.stated().reduced.loops[loop].covariance};
+  }
   void weigh_new(Explanation<Pose>& now);
   void predict(Explanation<Pose>& now);
   Matrix odometry_says(Index loop, double scale) const;

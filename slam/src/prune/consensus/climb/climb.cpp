@@ -24,7 +24,7 @@ Explanation<Pose> unlearnt(std::vector<bool> accepted, const CovarianceScale& sc
   const std::size_t loops = accepted.size();
   Explanation<Pose> explanation{.accepted = std::move(accepted), .scale = scale};
   explanation.shares.loops[0] = static_cast<double>(loops);
-  explanation.weights.assign(loops, 1.0);
+  explanation.weights.resize(loops);
   return explanation;
 }
 
@@ -275,12 +275,14 @@ bool Climb<Pose>::shift() {
 template <class Pose>
 bool Climb<Pose>::weigh_by_others() {
   if (failed_[Trial::weights_by_others]) return false;
-  std::vector<double> weights = now_.weights;
+  const ScaleMixture& mixture = assessment_.findings().mixture;
+  std::vector<LoopWeight> weights = now_.weights;
   bool differ = false;
   for (std::size_t k = 0; k < weights.size(); ++k) {
     if (!now_.accepted[k]) continue;
     weights[k] = now_.standings[k].weight;
-    differ = differ || are_of_different_scales(weights[k], now_.weights[k]);
+    differ = differ ||
+             are_of_different_scales(mixture.factor(weights[k]), mixture.factor(now_.weights[k]));
   }
   if (differ && try_with([&](auto& now) { now.weights = weights; })) return true;
   failed_[Trial::weights_by_others] = true;

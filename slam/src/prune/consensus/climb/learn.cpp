@@ -91,71 +91,116 @@ struct Component {
 /// Of a loop.
 template <class Pose>
 struct Residual {
+  using Tangent = typename Pose::Tangent;
+
   double chi2() const { return parts.sum(); }
 
-  typename Pose::Tangent parts;  // of chi-squared, by coordinate, in the file's units
-  double redundancy = 0.0;
-  double weight = 1.0;
+  // How much of it tells of the scale that is learnt: of one that errs as stated nothing.
+  Tangent telling() const { return (1.0 - weight.stated) * redundancy; }
+
+  Tangent parts;  // of chi-squared, by coordinate, in the file's units
+  double stated;  // chi-squared, by what the file states
+  Tangent redundancy;
+  LoopWeight weight;
 };
 
 template <class Pose>
-std::vector<Residual<Pose>> residuals_of(const Assessment<Pose>& assessment,
-                                         const Explanation<Pose>& explanation) {
-  std::vector<Residual<Pose>> residuals;
+using Residuals = std::vector<Residual<Pose>>;
+
+template <class Pose>
+Residuals<Pose> residuals_of(const Assessment<Pose>& assessment,
+                             const Explanation<Pose>& explanation) {
+  Residuals<Pose> residuals;
   for (std::size_t k = 0; k < explanation.accepted.size(); ++k) {
-    const auto& loop = assessment.graph().loops[k];
-    if (!explanation.accepted[k] || loop.a == loop.b) continue;
-    const typename Pose::Tangent r = assessment.estimate().residual(loop);
-    residuals.push_back({r.cwiseProduct(loop.information * r),
-                         assessment.redundancy(explanation, static_cast<Index>(k)).sum(),
-                         explanation.weights[k]});
+    const auto loop = static_cast<Index>(k);
+    const auto& link = assessment.graph().loops[k];
+    if (!explanation.accepted[k] || link.a == link.b) continue;
+    const typename Pose::Tangent r = assessment.estimate().residual(link);
+    residuals.push_back({r.cwiseProduct(link.information * r),
+                         r.dot(assessment.stated_information(loop) * r),
+                         assessment.redundancy(explanation, loop), explanation.weights[k]});
   }
   return residuals;
 }
 
-// Weighs them by what is expected of each; how many are of which scale then. A residual tells as
-// far as it is redundant: the rest of it was fitted.
+/// What loops are expected to err by.
 template <class Pose>
-ScaleShares weigh(const ScaleMixture& mixture, std::vector<Residual<Pose>>& residuals) {
+struct Accuracy {
+  using Tangent = typename Pose::Tangent;
+
+  ScaleMixture mixture() const { return expected_mixture(scale, shares, shape.minCoeff()); }
+  Tangent logs() const { return log_scales(scale, shape); }
+
+  double scale;
+  Tangent shape;
+  ScaleShares shares;
+};
+
+// A residual tells as far as it is redundant: the rest of it was fitted.
+template <class Pose>
+ErrorScale error_scale(const Residual<Pose>& residual, const ScaleMixture& mixture,
+                       const typename Pose::Tangent& logs) {
+  return detail::error_scale(mixture, {.chi2 = residual.chi2() / mixture.scale,
+                                       .stated = residual.stated,
+                                       .dof = residual.redundancy.sum(),
+                                       .log_stated = -residual.redundancy.dot(logs)});
+}
+
+// Weighs them by what is expected of each; how many are of which scale then.
+template <class Pose>
+ScaleShares weigh(const Accuracy<Pose>& accuracy, Residuals<Pose>& residuals) {
+  const ScaleMixture mixture = accuracy.mixture();
+  const typename Pose::Tangent logs = accuracy.logs();
   ScaleShares shares;
   for (auto& residual : residuals) {
-    const double chi2 = residual.chi2() / mixture.scale;
-    const ErrorScale error = error_scale(mixture, chi2, residual.redundancy);
+    const ErrorScale error = error_scale(residual, mixture, logs);
     residual.weight = error.weight;
     shares.add(error);
   }
   return shares;
 }
 
-// The likeliest, and residuals weighed by them, at a scale of most that is learnt with them.
+// What they cost and tell, by coordinate, for the scale that is learnt.
 template <class Pose>
-ScaleShares likeliest_from(const ScaleShift& start, double scale,
-                           std::vector<Residual<Pose>>& residuals) {
-  ScaleShares shares = start.shares;
-  double log_scale = std::log(scale * start.factor);
-  double redundancy = 0.0;
-  for (const auto& residual : residuals) redundancy += residual.redundancy;
-  for (int k = 0; k < kRepetitions; ++k) {
-    shares = weigh(expected_mixture(std::exp(log_scale), shares), residuals);
-    double cost = 0.0;
-    for (const auto& residual : residuals) cost += residual.weight * residual.chi2();
-    log_scale = std::clamp(drawn_in(cost, redundancy), -kMostScale, kMostScale);
+Component<typename Pose::Tangent> component_of(const Residuals<Pose>& residuals) {
+  Component<typename Pose::Tangent> loops{Pose::Tangent::Zero(), Pose::Tangent::Zero()};
+  for (const auto& residual : residuals) {
+    loops.cost += residual.weight.learnt * residual.parts;
+    loops.redundancy += residual.telling();
   }
-  return shares;
+  return loops;
 }
 
-// With all shares integrated out, as Objective::evidence() has it.
+// The likeliest, and residuals weighed by them, at a scale of most that is learnt with them.
 template <class Pose>
-double log_likelihood(const ScaleMixture& mixture, const std::vector<Residual<Pose>>& residuals) {
+ScaleShares likeliest_from(Accuracy<Pose> accuracy, Residuals<Pose>& residuals) {
+  for (int k = 0; k < kRepetitions; ++k) {
+    accuracy.shares = weigh(accuracy, residuals);
+    const auto [cost, redundancy] = component_of(residuals);
+    const double log_scale = drawn_in(cost.sum(), redundancy.sum());
+    accuracy.scale = std::exp(std::clamp(log_scale, -kMostScale, kMostScale));
+  }
+  return accuracy.shares;
+}
+
+// With all shares integrated out, and the peak of the scale as wide as these residuals leave it, as
+// Objective::evidence() has it.
+template <class Pose>
+double log_likelihood(const Accuracy<Pose>& accuracy, const Residuals<Pose>& residuals) {
+  const ScaleMixture mixture = accuracy.mixture();
+  const typename Pose::Tangent logs = accuracy.logs();
+  typename Pose::Tangent telling = Pose::Tangent::Zero();
   double sum = 0.0;
   ScaleShares found;
   for (const auto& residual : residuals) {
-    const double chi2 = residual.chi2() / mixture.scale;
-    const ErrorScale error = error_scale(mixture, chi2, residual.redundancy);
-    sum += error.evidence - 0.5 * error.weight * chi2;
+    const ErrorScale error = error_scale(residual, mixture, logs);
+    const auto& [learnt, stated] = error.weight;
+    sum += error.evidence - 0.5 * (learnt * residual.chi2() / mixture.scale +
+                                   stated * residual.stated + residual.redundancy.dot(logs));
+    telling += (1.0 - stated) * residual.redundancy;
     found.add(error);
   }
-  return sum + found.log_evidence();
+  return sum + found.log_evidence() + log_scale_peak(logs, telling);
 }
 
 // By coordinate, or where correlations leave one of them a negative cost by part.
@@ -190,26 +235,21 @@ Lesson<Pose> of_odometry(const Explanation<Pose>& explanation, bool same_shapes)
 // `lesson`; what they gain is not yet against how likely they were before.
 template <class Pose>
 Lesson<Pose> of_loops(const ScaleShift& start, const Explanation<Pose>& explanation,
-                      std::vector<Residual<Pose>> residuals, bool same_shapes,
-                      Lesson<Pose> lesson) {
+                      Residuals<Pose> residuals, bool same_shapes, Lesson<Pose> lesson) {
   using Tangent = typename Pose::Tangent;
   const double scale = explanation.scale.loops;
   const Tangent& shape = explanation.shapes.loops;
-  const Tangent& redundancy = explanation.redundancy.loops;
-  lesson.shares = likeliest_from(start, scale, residuals);
-  Tangent cost = Tangent::Zero();
-  for (const auto& residual : residuals) cost += residual.weight * residual.parts;
-  const Component<Tangent> loops{cost.cwiseProduct(shape), redundancy};
-  const Tangent before = log_scales(scale, shape);
-  const Tangent now = told_apart<Pose>(loops).likeliest(before, same_shapes);
+  const ScaleShares shares =
+      likeliest_from<Pose>({scale * start.factor, shape, start.shares}, residuals);
+  Component<Tangent> loops = component_of(residuals);
+  loops.cost = loops.cost.cwiseProduct(shape);
+  const Tangent now = told_apart<Pose>(loops).likeliest(log_scales(scale, shape), same_shapes);
   std::tie(lesson.scale.loops, lesson.shapes.loops) = scale_and_shape(now);
-  lesson.gain += log_scale_peak(now, redundancy) - log_scale_peak(before, redundancy) -
-                 0.5 * redundancy.dot(now - before);
   const Tangent change = lesson.shapes.loops.cwiseQuotient(shape);
   for (auto& residual : residuals) residual.parts = residual.parts.cwiseQuotient(change);
-  const auto mixture = [&] { return expected_mixture(lesson.scale.loops, lesson.shares); };
-  lesson.shares = weigh(mixture(), residuals);
-  lesson.gain += log_likelihood(mixture(), residuals);
+  Accuracy<Pose> found{lesson.scale.loops, lesson.shapes.loops, shares};
+  found.shares = lesson.shares = weigh(found, residuals);
+  lesson.gain += log_likelihood(found, residuals);
   return lesson;
 }
 
@@ -220,7 +260,8 @@ Lesson<Pose> learn(const Assessment<Pose>& assessment, const Explanation<Pose>& 
                    bool same_shapes) {
   const auto residuals = residuals_of(assessment, explanation);
   const ScaleShares& shares = explanation.shares;
-  const double before = log_likelihood(explanation.mixture(), residuals);
+  const double before =
+      log_likelihood<Pose>({explanation.scale.loops, explanation.shapes.loops, shares}, residuals);
   const Lesson<Pose> odometry = of_odometry(explanation, same_shapes);
   Lesson<Pose> best = odometry;
   for (const ScaleShift& start :
@@ -238,8 +279,8 @@ double most_gain_of_wider(double factor, const Assessment<Pose>& assessment,
   double cost = assessment.estimate().odometry_cost() / explanation.scale.odometry;
   double redundancy = 0.0;
   for (const auto& residual : residuals_of(assessment, explanation)) {
-    cost += residual.weight * residual.chi2() / explanation.scale.loops;
-    redundancy += residual.redundancy;
+    cost += residual.weight.learnt * residual.chi2() / explanation.scale.loops;
+    redundancy += residual.telling().sum();
   }
   return 0.5 * ((1.0 - 1.0 / factor) * cost - redundancy * std::log(factor));
 }

@@ -61,8 +61,8 @@ Standpoint<Pose> carry(const Explanation<Pose>& before,
       before.shapes == Shapes<Pose>{} ? objective.stated() : objective.scaled(before.shapes));
   for (const auto& loop : known.loops) {
     explanation.accepted.push_back(loop && before.accepted[*loop]);
-    explanation.weights.push_back(loop ? before.weights[*loop] : 1.0);
-    findings.held.push_back(loop ? found.held[*loop] : 0.0);
+    explanation.weights.push_back(loop ? before.weights[*loop] : LoopWeight{});
+    findings.held.push_back(loop ? found.held[*loop] : Pose::Matrix::Zero());
     findings.covariances.push_back(loop ? found.covariances[*loop] : Pose::Matrix::Zero());
   }
   explanation.layout =

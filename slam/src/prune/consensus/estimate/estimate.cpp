@@ -96,18 +96,22 @@ void Estimate<Pose>::lay_out(const std::vector<bool>& accepted) {
   component_ = equations_->gauge().component;
 }
 
-// The factor on the information of a used link.
 template <class Pose>
-double Estimate<Pose>::weight(Index link, const CovarianceScale& scale) const {
-  const auto step_count = static_cast<Index>(graph_->steps.size());
-  if (link < step_count) return 1.0 / scale.odometry;
-  return 1.0 / scale.loops * (weights_.empty() ? 1.0 : weights_[used_loops_[link - step_count]]);
+typename Pose::Matrix Estimate<Pose>::loop_information(std::size_t used,
+                                                       const CovarianceScale& scale) const {
+  const Index loop = used_loops_[used];
+  if (!information_.empty()) return information_[loop];
+  return 1.0 / scale.loops * graph_->loops[loop].information;
 }
 
 template <class Pose>
 void Estimate<Pose>::linearize(const CovarianceScale& scale) {
+  const auto step_count = static_cast<Index>(graph_->steps.size());
+  for (std::size_t k = 0; k < used_loops_.size(); ++k) {
+    equations_->inform(step_count + static_cast<Index>(k), loop_information(k, scale));
+  }
   const auto scaling = [&](Index link, double) {
-    const double factor = weight(link, scale);
+    const double factor = link < step_count ? 1.0 / scale.odometry : 1.0;
     return EdgeScaling{factor, factor, 0.0};
   };
   linearized_ = poses_;
@@ -181,8 +185,12 @@ template <class Pose>
 typename Estimate<Pose>::Layout Estimate<Pose>::relaxed(const std::vector<bool>& accepted,
                                                         const CovarianceScale& scale) {
   PoseGraph<Pose> used = used_links(accepted);
-  for (Index k = 0; k < used.constraint_count(); ++k) {
-    used.constraints[k].information *= weight(k, scale);
+  const std::size_t step_count = graph_->steps.size();
+  for (std::size_t k = 0; k < step_count; ++k) {
+    used.constraints[k].information /= scale.odometry;
+  }
+  for (std::size_t k = 0; k < used_loops_.size(); ++k) {
+    used.constraints[step_count + k].information = loop_information(k, scale);
   }
   used.poses = poses_;
   return {initial_poses(used, EdgeRoles{}, Initialization::chordal), component_};

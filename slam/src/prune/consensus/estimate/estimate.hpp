@@ -53,8 +53,8 @@ class Estimate {
   void settle(const std::vector<bool>& accepted, const CovarianceScale& scale, int max_steps,
               const std::function<bool()>& reweigh);
 
-  /// From the next step on the information of each loop is multiplied by its entry, if any.
-  void weigh_loops(std::vector<double> weights) { weights_ = std::move(weights); }
+  /// From the next step on the information of each loop, in place of the graph's over its scale.
+  void weigh_loops(std::vector<Matrix> information) { information_ = std::move(information); }
 
   const std::vector<Pose>& poses() const noexcept { return poses_; }
 
@@ -110,7 +110,7 @@ class Estimate {
 
  private:
   void lay_out(const std::vector<bool>& accepted);
-  double weight(Index link, const CovarianceScale& scale) const;
+  Matrix loop_information(std::size_t used, const CovarianceScale& scale) const;
   void linearize(const CovarianceScale& scale);
   void factorise();
   Eigen::VectorXd next_move();
@@ -125,11 +125,11 @@ class Estimate {
   std::vector<Pose> linearized_;  // poses where the factor was formed
   Eigen::VectorXd move_;          // from there to poses_; empty without a factor
   std::vector<Index> component_;
-  std::vector<bool> laid_out_for_;  // loops that the equations hold, after all steps
-  std::vector<Index> used_loops_;   // of laid_out_for_, those between different nodes
-  std::vector<double> weights_;
+  std::vector<bool> laid_out_for_;   // loops that the equations hold, after all steps
+  std::vector<Index> used_loops_;    // of laid_out_for_, those between different nodes
+  std::vector<Matrix> information_;  // of loops; the graph's where empty
   std::optional<NormalEquations<Pose>> equations_;
-  bool has_factor_ = false;  // the equations have one, if of other poses or weights
+  bool has_factor_ = false;  // the equations have one, if of other poses or information
   bool factorised_ = false;  // it is of these
   bool settled_ = true;      // in the steps of the last update
   Pace pace_;                // whenever the equations were set up

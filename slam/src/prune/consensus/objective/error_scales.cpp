@@ -37,8 +37,8 @@ double ScaleShares::log_evidence() const {
   return log_probability;
 }
 
-bool are_of_different_scales(double weight, double other) {
-  return std::max(weight, other) >= kScaleStep * std::min(weight, other);
+bool are_of_different_scales(double factor, double other) {
+  return std::max(factor, other) >= kScaleStep * std::min(factor, other);
 }
 
 ScaleShift wider_most(const ScaleShares& shares) {
@@ -57,51 +57,51 @@ ScaleShift all_as_worst(const ScaleShares& shares) {
 }
 
 // What the file states is a scale of its own only beyond the worst of the others.
-ScaleMixture expected_mixture(double scale, const ScaleShares& shares) {
+ScaleMixture expected_mixture(double scale, const ScaleShares& shares, double sharpest) {
   ScaleMixture mixture{.scale = scale, .relative = {1.0, kScaleStep, kWorst, 1.0 / scale}};
   ByScale expected = kPriorLoops;
   for (std::size_t j = 0; j < kScaleCount; ++j) expected[j] += shares.loops[j];
   const double all = sum_of(expected);
   for (std::size_t j = 0; j < kScaleCount; ++j) mixture.log_share[j] = std::log(expected[j] / all);
-  if (mixture.relative[3] <= kWorst) {
-    mixture.relative[3] = kWorst;
+  if (scale * sharpest * kWorst >= 1.0) {
     mixture.log_share[2] = std::log((expected[2] + expected[3]) / all);
     mixture.log_share[3] = kNever;
-  }
-  for (std::size_t j = 0; j < kScaleCount; ++j) {
-    mixture.log_relative[j] = std::log(mixture.relative[j]);
   }
   return mixture;
 }
 
 double ScaleMixture::share_of_worse() const { return 1.0 - std::exp(log_share.front()); }
 
-ErrorScale error_scale(const ScaleMixture& mixture, const ByScale& log_density, double dof) {
+ErrorScale error_scale(const ScaleMixture& mixture, const ByScale& log_density) {
   const double most = *std::ranges::max_element(log_density);
   double sum = 0.0;
-  ErrorScale result{.weight = 0.0};
+  ErrorScale result{.weight = {0.0, 0.0}};
+  auto& [probability, weight, evidence] = result;
   for (std::size_t j = 0; j < kScaleCount; ++j) {
-    result.probability[j] = mixture.has(j) ? std::exp(log_density[j] - most) : 0.0;
-    sum += result.probability[j];
+    probability[j] = mixture.has(j) ? std::exp(log_density[j] - most) : 0.0;
+    sum += probability[j];
   }
-  const double log_all = most + std::log(sum);
-  for (std::size_t j = 0; j < kScaleCount; ++j) {
-    double& p = result.probability[j];
-    p /= sum;
-    result.weight += p / mixture.relative[j];
-    if (p == 0.0) continue;
-    result.evidence -= p * (0.5 * dof * mixture.log_relative[j] + log_density[j] - log_all);
-  }
+  for (double& p : probability) p /= sum;
+  for (std::size_t j = 0; j < kAsStated; ++j) weight.learnt += probability[j] / mixture.relative[j];
+  weight.stated = probability[kAsStated];
   return result;
 }
 
-ErrorScale error_scale(const ScaleMixture& mixture, double chi2, double dof) {
+ErrorScale error_scale(const ScaleMixture& mixture, const Misfit& misfit) {
+  ByScale log_determinant;
   ByScale log_density;
   for (std::size_t j = 0; j < kScaleCount; ++j) {
-    log_density[j] =
-        mixture.log_share[j] - 0.5 * (dof * mixture.log_relative[j] + chi2 / mixture.relative[j]);
+    const bool stated = j == kAsStated;
+    log_determinant[j] = stated ? misfit.log_stated : misfit.dof * std::log(mixture.relative[j]);
+    const double chi2 = stated ? misfit.stated : misfit.chi2 / mixture.relative[j];
+    log_density[j] = mixture.log_share[j] - 0.5 * (log_determinant[j] + chi2);
   }
-  return error_scale(mixture, log_density, dof);
+  ErrorScale result = error_scale(mixture, log_density);
+  for (std::size_t j = 0; j < kScaleCount; ++j) {
+    const double p = result.probability[j];
+    if (p > 0.0) result.evidence -= p * (0.5 * log_determinant[j] + std::log(p));
+  }
+  return result;
 }
 
 }  // namespace isotherm::slam::detail

@@ -6,18 +6,26 @@
 namespace isotherm::slam::detail {
 
 /// How accurate a loop is: as most are, or less, by three or nine times in the variance, or as the
-/// file states where that is less still. Against most first, so that the units of the file's
-/// information play next to no part.
+/// file states where that is less still in a coordinate. Against most first, so that the units of
+/// the file's information play next to no part.
 inline constexpr std::size_t kScaleCount = 4;
+inline constexpr std::size_t kAsStated = 3;
 using ByScale = std::array<double, kScaleCount>;
 
 inline constexpr double kNever = -1e9;  ///< log of no probability
 
+/// Factors on the information of a loop that make it the mean inverse of its covariance.
+struct LoopWeight {
+  double learnt = 1.0;  ///< on that at the scale of most
+  double stated = 0.0;  ///< on that which the file states: the probability that this is its own
+};
+
 /// What is believed of the scale of one loop.
 struct ErrorScale {
   ByScale probability{};
-  double weight = 1.0;    ///< mean of 1 / scale: the factor on its information
-  double evidence = 0.0;  ///< mean of log(scale^(-dof/2) / probability)
+  LoopWeight weight;
+  double evidence =
+      0.0;  ///< mean of log(|covariance|^(-1/2) / probability), |that of most| being 1
 };
 
 /// How many loops are of which scale. Of the share of those that are worse than most nothing is
@@ -32,8 +40,8 @@ struct ScaleShares {
   double log_evidence() const;
 };
 
-/// Whether loops of these weights err as loops of different scales do.
-bool are_of_different_scales(double weight, double other);
+/// Whether loops of these factors on their information err as loops of different scales do.
+bool are_of_different_scales(double factor, double other);
 
 /// The same loops with another scale called that of most.
 struct ScaleShift {
@@ -53,8 +61,7 @@ ScaleShift all_as_worst(const ScaleShares& shares);
 /// What is expected of the next loop.
 struct ScaleMixture {
   double scale = 1.0;  ///< on the stated covariance, of most
-  ByScale relative{};  ///< scales against that of most, ascending
-  ByScale log_relative{};
+  ByScale relative{};  ///< variances against those of most, ascending; as stated: in the mean
   ByScale log_share{};
 
   /// Whether any can be of this scale.
@@ -62,14 +69,27 @@ struct ScaleMixture {
 
   /// Of those that are not as accurate as most.
   double share_of_worse() const;
+
+  /// The mean of variances' inverses against those of most, by geometric means over coordinates.
+  double factor(const LoopWeight& weight) const {
+    return weight.learnt + weight.stated / relative.back();
+  }
 };
 
-ScaleMixture expected_mixture(double scale, const ScaleShares& shares);
+/// `sharpest`: of the factors on coordinates, beside the scale (Shapes), the least.
+ScaleMixture expected_mixture(double scale, const ScaleShares& shares, double sharpest = 1.0);
 
-/// From log densities at each scale, of any common factor.
-ErrorScale error_scale(const ScaleMixture& mixture, const ByScale& log_density, double dof);
+/// What is expected of the squared Mahalanobis distance of a loop's error.
+struct Misfit {
+  double chi2 = 0.0;        ///< at the scale of most
+  double stated = 0.0;      ///< as stated
+  double dof = 0.0;         ///< coordinates that tell
+  double log_stated = 0.0;  ///< log |stated covariance| of these, that of most being 1
+};
 
-/// From the squared Mahalanobis distance that is expected of the error, at the scale of most.
-ErrorScale error_scale(const ScaleMixture& mixture, double chi2, double dof);
+/// From log densities at each scale, of any common factor; without the evidence.
+ErrorScale error_scale(const ScaleMixture& mixture, const ByScale& log_density);
+
+ErrorScale error_scale(const ScaleMixture& mixture, const Misfit& misfit);
 
 }  // namespace isotherm::slam::detail

@@ -54,69 +54,81 @@ Nodes log_fit(const typename Pose::Tangent& r, const typename Pose::Tangent& var
   return -0.5 * (determinant.log() + chi2);
 }
 
+// With these factors on the own covariance and on that of the others.
+template <class Pose>
+double log_density(const Prediction<Pose>& prediction, const Factors& own,
+                   const Factors& odometry) {
+  const auto& [r, variance, log_sigma] = prediction;
+  Nodes by_odometry = odometry.log_weight;
+  for (Eigen::Index i = 0; i < odometry.value.size(); ++i) {
+    const typename Pose::Tangent others = odometry.value[i] * variance;
+    by_odometry[i] += log_sum_of(own.log_weight + log_fit<Pose>(r, others, own.value));
+  }
+  return log_sum_of(by_odometry) - 0.5 * (log_sigma + Pose::kDof * kLog2Pi);
+}
+
 }  // namespace
 
 template <class Pose>
-Prediction<Pose> predict(const typename Pose::Tangent& r, const typename Pose::Matrix& P,
-                         const typename Pose::Matrix& Sigma) {
+Prediction<Pose> predict(const Belief<Pose>& others, const typename Pose::Matrix& Sigma) {
   using Matrix = typename Pose::Matrix;
   const Eigen::LLT<Matrix> root(Sigma);
-  const Matrix half = root.matrixL().solve(P);
+  const Matrix half = root.matrixL().solve(others.P);
   const Matrix known = root.matrixL().solve(half.transpose());
   const Eigen::SelfAdjointEigenSolver<Matrix> axes(known);
-  return {axes.eigenvectors().transpose() * root.matrixL().solve(r),
+  return {axes.eigenvectors().transpose() * root.matrixL().solve(others.r),
           axes.eigenvalues().cwiseMax(0.0), log_determinant(root)};
 }
 
-// Where all leave the variance v, the others leave v / (1 - precision v), and the residual against
-// them is as many times as long.
+// With Omega = L L', along the axes of L' P L: where all leave the variance v, the others leave
+// v / (1 - v), and the residual against them is as many times as long.
 template <class Pose>
-Prediction<Pose> predict_without(const typename Pose::Tangent& r, const typename Pose::Matrix& P,
-                                 const typename Pose::Matrix& Sigma, double precision) {
-  Prediction<Pose> prediction = predict<Pose>(r, P, Sigma);
-  for (int d = 0; d < Pose::kDof; ++d) {
-    const double redundancy = std::max(1.0 - precision * prediction.variance[d], kLeastShare);
-    prediction.r[d] /= redundancy;
-    prediction.variance[d] /= redundancy;
-  }
-  return prediction;
+Belief<Pose> without(const Belief<Pose>& with, const typename Pose::Matrix& Omega) {
+  using Matrix = typename Pose::Matrix;
+  const Eigen::LLT<Matrix> root(Omega);
+  const Matrix L = root.matrixL();
+  const Eigen::SelfAdjointEigenSolver<Matrix> axes(L.transpose() * with.P * L);
+  const Matrix to_axes = axes.eigenvectors().transpose() * L.transpose();
+  const typename Pose::Tangent v = axes.eigenvalues().cwiseMax(0.0);
+  const typename Pose::Tangent redundancy = (1.0 - v.array()).max(kLeastShare);
+  const Matrix back = root.matrixU().solve(axes.eigenvectors());
+  const typename Pose::Tangent r = (to_axes * with.r).cwiseQuotient(redundancy);
+  const typename Pose::Tangent left = v.cwiseQuotient(redundancy);
+  return {back * r, back * left.asDiagonal() * back.transpose()};
 }
 
 template <class Pose>
-LoopGain loop_gain(const Prediction<Pose>& prediction, const ScaleMixture& mixture,
-                   const CovarianceScale& deviation) {
-  const auto& [r, variance, log_sigma] = prediction;
+LoopGain loop_gain(const Belief<Pose>& others, const OwnError<Pose>& own,
+                   const ScaleMixture& mixture, const CovarianceScale& deviation) {
   const Factors odometry = factors(deviation.odometry);
-  const Factors own = factors(deviation.loops);
+  const Factors learnt_scale = factors(deviation.loops);
+  const auto learnt = predict<Pose>(others, own.learnt);
   ByScale density;
   density.fill(kNever);
-  for (std::size_t j = 0; j < kScaleCount; ++j) {
+  for (std::size_t j = 0; j < kAsStated; ++j) {
     if (!mixture.has(j)) continue;
-    const Nodes own_variance = mixture.scale * mixture.relative[j] * own.value;
-    Nodes by_odometry = odometry.log_weight;
-    for (Eigen::Index i = 0; i < odometry.value.size(); ++i) {
-      const typename Pose::Tangent others = odometry.value[i] * variance;
-      by_odometry[i] += log_sum_of(own.log_weight + log_fit<Pose>(r, others, own_variance));
-    }
-    density[j] = mixture.log_share[j] + log_sum_of(by_odometry);
+    const Factors scales{mixture.scale * mixture.relative[j] * learnt_scale.value,
+                         learnt_scale.log_weight};
+    density[j] = mixture.log_share[j] + log_density(learnt, scales, odometry);
+  }
+  if (mixture.has(kAsStated)) {
+    const auto stated = predict<Pose>(others, own.stated);
+    density[kAsStated] = mixture.log_share[kAsStated] + log_density(stated, factors(0.0), odometry);
   }
   LoopGain gain;
-  gain.log_density = log_sum_of(Nodes::Map(density.data(), kScaleCount)) -
-                     0.5 * (log_sigma + Pose::kDof * kLog2Pi);
-  gain.chi2 = (r.array().square() / (variance.array() + mixture.scale)).sum();
-  gain.weight = error_scale(mixture, density, Pose::kDof).weight;
+  gain.log_density = log_sum_of(Nodes::Map(density.data(), kScaleCount));
+  gain.chi2 = (learnt.r.array().square() / (learnt.variance.array() + mixture.scale)).sum();
+  gain.weight = error_scale(mixture, density).weight;
   return gain;
 }
 
-template Prediction<Pose2> predict(const Pose2::Tangent&, const Pose2::Matrix&,
-                                   const Pose2::Matrix&);
-template Prediction<Pose3> predict(const Pose3::Tangent&, const Pose3::Matrix&,
-                                   const Pose3::Matrix&);
-template Prediction<Pose2> predict_without(const Pose2::Tangent&, const Pose2::Matrix&,
-                                           const Pose2::Matrix&, double);
-template Prediction<Pose3> predict_without(const Pose3::Tangent&, const Pose3::Matrix&,
-                                           const Pose3::Matrix&, double);
-template LoopGain loop_gain(const Prediction<Pose2>&, const ScaleMixture&, const CovarianceScale&);
-template LoopGain loop_gain(const Prediction<Pose3>&, const ScaleMixture&, const CovarianceScale&);
+template Prediction<Pose2> predict(const Belief<Pose2>&, const Pose2::Matrix&);
+template Belief<Pose2> without(const Belief<Pose2>&, const Pose2::Matrix&);
+template LoopGain loop_gain(const Belief<Pose2>&, const OwnError<Pose2>&, const ScaleMixture&,
+                            const CovarianceScale&);
+template Prediction<Pose3> predict(const Belief<Pose3>&, const Pose3::Matrix&);
+template Belief<Pose3> without(const Belief<Pose3>&, const Pose3::Matrix&);
+template LoopGain loop_gain(const Belief<Pose3>&, const OwnError<Pose3>&, const ScaleMixture&,
+                            const CovarianceScale&);
 
 }  // namespace isotherm::slam::detail

@@ -67,7 +67,7 @@ double Objective<Pose>::loops_fit(const Explanation<Pose>& explanation,
     if (!explanation.accepted[k]) continue;
     const auto& link = graph.reduced.loops[k];
     const typename Pose::Tangent r = estimate.residual(link);
-    const double chi2 = explanation.weights[k] * r.dot(link.information * r) / scale;
+    const double chi2 = r.dot(information(explanation, graph, static_cast<Index>(k)) * r);
     fit -= 0.5 * (chi2 + log_sigma_[k] + Pose::kDof * (kLog2Pi + std::log(scale)));
   }
   return fit;

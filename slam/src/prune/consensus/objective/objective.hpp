@@ -30,18 +30,20 @@ struct Explanation {
   std::vector<bool> accepted;  ///< one a loop
   CovarianceScale scale;       ///< factors on the stated covariances; of loops, that of most
   Shapes<Pose> shapes;
-  ScaleShares shares;           ///< of loops by how accurate they are, as believed
-  ScaleShares found;            ///< the same, as found among the accepted ones
-  std::vector<double> weights;  ///< of the loops' information, by their scales; one a loop
-  double scale_evidence = 0.0;  ///< ErrorScale::evidence, summed over the accepted ones
-  Redundancy<Pose> redundancy;  ///< of odometry and of the accepted loops
+  ScaleShares shares;               ///< of loops by how accurate they are, as believed
+  ScaleShares found;                ///< the same, as found among the accepted ones
+  std::vector<LoopWeight> weights;  ///< by their scales; one a loop
+  double scale_evidence = 0.0;      ///< ErrorScale::evidence, summed over the accepted ones
+  Redundancy<Pose> redundancy;      ///< of odometry and of the accepted loops of scales learnt
   typename Pose::Tangent odometry_cost = Pose::Tangent::Zero();  ///< OdometryComponent::cost
   typename Estimate<Pose>::Layout layout;
   std::vector<Standing> standings;  ///< of each loop, given all others
   double evidence = 0.0;            ///< Objective::evidence()
 
   /// What is expected of how accurate the next loop is.
-  ScaleMixture mixture() const { return expected_mixture(scale.loops, shares); }
+  ScaleMixture mixture() const {
+    return expected_mixture(scale.loops, shares, shapes.loops.minCoeff());
+  }
 };
 
 /// The log evidence of an explanation: of the accepted set A and the scales,
@@ -78,6 +80,14 @@ class Objective {
     return scaled_graph(graph_, roles_, shapes);
   }
   const Runs<Pose>& runs() const noexcept { return runs_; }
+
+  /// The mean inverse of a loop's covariance, by its weight.
+  typename Pose::Matrix information(const Explanation<Pose>& now, const ScaledGraph<Pose>& graph,
+                                    Index loop) const {
+    const auto& [learnt, stated] = now.weights[loop];
+    return learnt / now.scale.loops * graph.reduced.loops[loop].information +
+           stated * stated_.reduced.loops[loop].information;
+  }
 
   /// log k_mean of each class of loops on the map with nodes at `poses`.
   NearByClass near(const std::vector<Pose>& poses) const { return near_.log_mean(poses); }

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "isotherm/slam/graph/pose_graph.hpp"
+#include "prune/consensus/objective/error_scales.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -15,7 +16,7 @@ struct Standing {
   double chi2 = 0.0;      ///< against what they predict
   double evidence = 0.0;  ///< log of how much likelier true than false, without the prior
   double log_odds = 0.0;  ///< of true, with the prior
-  double weight = 1.0;    ///< ErrorScale's, by what they predict; of accepted loops
+  LoopWeight weight;      ///< ErrorScale's, by what they predict; of accepted loops
 };
 
 }  // namespace isotherm::slam::detail
