@@ -152,7 +152,7 @@ std::vector<double> Climb<Pose>::first_gains(const std::vector<CovarianceScale>&
 
 // That of an earlier climb which passed here, which explains the same loops better, or which holds
 // all loops of this one and explains them better, by its scales and map too where those were
-// `learnt` from them.
+// `learnt` from them; but not where this climb can learn better ones.
 template <class Pose>
 const Explanation<Pose>* Climb<Pose>::peak_ahead(bool learnt) {
   for (const Passed& passed : passed_) {
@@ -160,9 +160,13 @@ const Explanation<Pose>* Climb<Pose>::peak_ahead(bool learnt) {
   }
   for (const auto& peak : peaks_) {
     if (now_.accepted == peak.accepted) {
-      if (!outdoes(peak)) return &peak;
+      if (!outdoes(peak.evidence)) return &peak;
     } else if (learnt && is_part(now_.accepted, peak.accepted)) {
-      if (try_with(scales_of(peak), -kBetter, &peak.layout)) return &peak;
+      const Place here = place();
+      if (!try_with(scales_of(peak), -kBetter, &peak.layout)) continue;
+      const double there = now_.evidence;
+      go_back(here);
+      if (!outdoes(there)) return &peak;
     }
   }
   return nullptr;
@@ -177,9 +181,9 @@ bool Climb<Pose>::is_here(const Passed& passed) const {
 
 // Whether the scales that can be learnt from here explain the same loops better.
 template <class Pose>
-bool Climb<Pose>::outdoes(const Explanation<Pose>& peak) {
-  while (now_.evidence <= peak.evidence) {
-    if (!learn_more_than((peak.evidence - now_.evidence) / kPatience)) return false;
+bool Climb<Pose>::outdoes(double evidence) {
+  while (now_.evidence <= evidence) {
+    if (!learn_more_than((evidence - now_.evidence) / kPatience)) return false;
   }
   return true;
 }
@@ -411,25 +415,29 @@ bool Climb<Pose>::learn_more_than(double gain) {
 // which the normal equations break down explain nothing.
 template <class Pose>
 bool Climb<Pose>::try_with(const Change& change, double gain, const Layout* from) {
-  const Explanation<Pose> before = now_;
-  const auto found = assessment_.findings();
-  const auto failed = failed_;
+  const Place before = place();
   change(now_);
   if (from) assessment_.stand_on(*from);
   bool better = false;
   try {
-    better = assess(before.evidence + gain);
+    better = assess(before.now.evidence + gain);
   } catch (const NumericalError&) {
     better = false;
   }
   if (better) {
     predict_runs();
   } else {
-    now_ = before;
-    assessment_.restore(now_, found);
-    failed_ = failed;
+    go_back(before);
   }
   return better;
+}
+
+template <class Pose>
+void Climb<Pose>::go_back(const Place& place) {
+  now_ = place.now;
+  assessment_.restore(now_, place.found);
+  run_density_ = place.run_density;
+  failed_ = place.failed;
 }
 
 template <class Pose>

@@ -77,6 +77,14 @@ class Climb {
   using Layout = typename Estimate<Pose>::Layout;
   using Change = std::function<void(Explanation<Pose>&)>;
 
+  // What a trial that fails goes back to.
+  struct Place {
+    Explanation<Pose> now;
+    typename Assessment<Pose>::Findings found;
+    std::vector<double> run_density;
+    std::array<bool, 4> failed;
+  };
+
   // Where a climb was, and the number of the peak that it led to; of this one that of the next.
   struct Passed {
     std::vector<bool> accepted;
@@ -92,7 +100,7 @@ class Climb {
   const Explanation<Pose>* peak_ahead(bool learnt);
   const Explanation<Pose>& lead_to(const Explanation<Pose>& peak);
   bool is_here(const Passed& passed) const;
-  bool outdoes(const Explanation<Pose>& peak);
+  bool outdoes(double evidence);
   double summit() const;
   const Explanation<Pose>* grow();
   bool has_fallen_behind() const;
@@ -111,6 +119,8 @@ class Climb {
   bool weigh_otherwise();
   void draw_anew();
   bool try_with(const Change& change, double gain = kBetter, const Layout* from = nullptr);
+  Place place() const { return {now_, assessment_.findings(), run_density_, failed_}; }
+  void go_back(const Place& place);
   void predict_runs();
   void note(std::size_t accepted, std::size_t dropped);
   void tell_progress() const;
