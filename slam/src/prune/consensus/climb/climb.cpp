@@ -182,10 +182,9 @@ bool Climb<Pose>::is_here(const Passed& passed) const {
 // Whether the scales that can be learnt from here explain the same loops better.
 template <class Pose>
 bool Climb<Pose>::outdoes(double evidence) {
-  while (now_.evidence <= evidence) {
-    if (!learn_more_than((evidence - now_.evidence) / kPatience)) return false;
+  while (now_.evidence <= evidence && learn_more_than(0.0)) {
   }
-  return true;
+  return now_.evidence > evidence;
 }
 
 template <class Pose>
