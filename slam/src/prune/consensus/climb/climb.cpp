@@ -229,10 +229,10 @@ const Explanation<Pose>* Climb<Pose>::grow() {
     tell_progress();
     const double before = best_.evidence;
     const std::size_t had = accepted_count();
-    const bool learnt =
-        had >= kMoreTelling * learnt_from_ && learn_more_than(gain_of_dropping(misfits()));
     const bool settled = had == 0 || assessment_.estimate().settled();
     if (!settled && had >= kMoreTelling * drawn_from_) draw_anew();
+    const bool learnt =
+        had >= kMoreTelling * learnt_from_ && learn_more_than(gain_of_dropping(misfits()));
     if (const auto* known = had > 0 ? peak_ahead(learnt) : nullptr) return known;
     if (!learnt && !move()) return nullptr;
     const double enough = std::max(summit() - best_.evidence, 0.0) / kPatience;
