@@ -55,6 +55,8 @@ def counted(verdicts, labels):
               for said in ("kept", "pruned", "ambiguous")}
     bins = [[0, 0] for _ in range(len(BINS) + 1)]  # loops, of these true
     for verdict in verdicts:
+        if labels[verdict["edge"]] == "ignore":  # false, but what it says is true
+            continue
         true = labels[verdict["edge"]] == "correct"
         said = {"keep": "kept", "prune": "pruned"}.get(verdict["verdict"], "ambiguous")
         counts[f"{'true' if true else 'false'} {said}"] += 1

@@ -18,6 +18,11 @@ METHODS = ["gnc", "pcm"]
 ONLINE = "online"
 
 
+def labelled(stream, label):
+    """The edges of this label: correct, incorrect, or ignore, which count nowhere."""
+    return {int(row["edge"]) for row in read_csv(stream.labels) if row["label"] == label}
+
+
 def precision_recall(kept, true):
     right = len(kept & true)
     return (right / len(kept) if kept else 1.0, right / len(true) if true else 1.0)
@@ -43,6 +48,7 @@ def error_of(command, work, graph, truth):
 def run_again(method, step, command, work, stream, true):
     """Precision, recall and error of a batch method at every so many poses, as means."""
     marks, errors = [], []
+    ignored = labelled(stream, "ignore")
     for lines in prefixes(stream, step):
         (work / "part.g2o").write_text("".join(lines), encoding="utf-8")
         command.run("prune", work / "part.g2o", "--method", method, "-o", work / "pruned.g2o",
@@ -50,7 +56,7 @@ def run_again(method, step, command, work, stream, true):
         rows = read_csv(work / "part.csv")
         if not rows:
             continue
-        kept = {int(row["edge"]) for row in rows if row["verdict"] == "keep"}
+        kept = {int(row["edge"]) for row in rows if row["verdict"] == "keep"} - ignored
         marks.append(precision_recall(kept, true & {int(row["edge"]) for row in rows}))
         if stream.truth:
             errors.append(error_of(command, work, work / "pruned.g2o", stream.truth))
@@ -72,8 +78,7 @@ def measure(command, data, graph, fraction, take):
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         stream = prepare(command, data, work, graph, "random", fraction)
-        true = {int(row["edge"]) for row in read_csv(stream.labels) if row["label"] == "correct"}
-        return take(command, work, stream, true)
+        return take(command, work, stream, labelled(stream, "correct"))
 
 
 def tasks(command, data):

@@ -6,7 +6,7 @@ import pathlib
 import statistics
 import tempfile
 
-from support.online_peers import precision_recall
+from support.online_peers import labelled, precision_recall
 from support.runs import read_csv
 from support.streams import prepare
 
@@ -32,7 +32,7 @@ def measure(command, data, graph, kind, fraction):
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         stream = prepare(command, data, work, graph, kind, fraction)
-        true = {int(row["edge"]) for row in read_csv(stream.labels) if row["label"] == "correct"}
+        true, ignored = labelled(stream, "correct"), labelled(stream, "ignore")
         command.run("follow", stream.graph, "--events", work / "e.jsonl")
         events = [event for event in map(json.loads, (work / "e.jsonl").read_text(
             encoding="utf-8").splitlines()) if "edge" in event]
@@ -42,7 +42,7 @@ def measure(command, data, graph, kind, fraction):
         for count in (len(lines) * k // (POINTS + 1) for k in range(1, POINTS + 1)):
             known = {edge for edge in true if edge < count}
             if known:
-                marks.append([precision_recall(kept, known)
+                marks.append([precision_recall(kept - ignored, known)
                               for kept in (kept_at(events, count),
                                            kept_by_batch(command, work, lines[:count]))])
     means = [[statistics.mean(mark[who][what] for mark in marks) for what in (0, 1)] for who in (0, 1)]
