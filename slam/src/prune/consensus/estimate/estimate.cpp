@@ -49,11 +49,15 @@ NormalEquations<Pose> equations_for(const PoseGraph<Pose>& used, const Pairs& ot
   const auto work = spectral::covariance_work(sparse.hessian(), rows);
   const auto links = static_cast<double>(used.constraints.size() + joined.size());
   if (work.pairs < kLinksOfAnalysis * kFlopsOfLink * links) return sparse;
-  NormalEquations<Pose> roomy(used, gauge, joined, form);
-  const auto filled = spectral::covariance_work(roomy.hessian(), rows);
-  const double more = kFactorisations * (roomy.hessian().flops() - sparse.hessian().flops()) +
-                      filled.fronts - work.fronts;
-  return more < work.pairs ? std::move(roomy) : std::move(sparse);
+  try {
+    NormalEquations<Pose> roomy(used, gauge, joined, form);
+    const auto filled = spectral::covariance_work(roomy.hessian(), rows);
+    const double more = kFactorisations * (roomy.hessian().flops() - sparse.hessian().flops()) +
+                        filled.fronts - work.fronts;
+    return more < work.pairs ? std::move(roomy) : std::move(sparse);
+  } catch (const NumericalError&) {  // a factor with that room has too many entries to be counted
+    return sparse;
+  }
 }
 
 template <class Pose>
