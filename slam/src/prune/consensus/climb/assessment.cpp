@@ -117,7 +117,7 @@ void Assessment<Pose>::rescale(const Shapes<Pose>& shapes) {
 template <class Pose>
 void Assessment<Pose>::find_peak(Explanation<Pose>& now) {
   weigh_new(now);
-  inform(now);
+  estimate_.weigh_loops(accepted_information(now));
   bool believed = false;
   estimate_.settle(now.accepted, now.scale, kMostSteps,
                    [&] { return reweigh(now, !std::exchange(believed, true)); });
@@ -133,13 +133,15 @@ void Assessment<Pose>::weigh_new(Explanation<Pose>& now) {
   }
 }
 
+// Zero of the others.
 template <class Pose>
-void Assessment<Pose>::inform(const Explanation<Pose>& now) {
+std::vector<typename Pose::Matrix> Assessment<Pose>::accepted_information(
+    const Explanation<Pose>& now) const {
   std::vector<Matrix> all(now.accepted.size(), Matrix::Zero());
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (now.accepted[k]) all[k] = information(now, static_cast<Index>(k));
   }
-  estimate_.weigh_loops(std::move(all));
+  return all;
 }
 
 // Whether weights changed, by so much as matters or `anyway`. Else all stay those that the factor
@@ -167,7 +169,7 @@ bool Assessment<Pose>::reweigh(Explanation<Pose>& now, bool anyway) {
   now.weights = std::move(weights);
   now.found = found;
   now.scale_evidence = evidence;
-  inform(now);
+  estimate_.weigh_loops(accepted_information(now));
   return change > 0.0;
 }
 
@@ -212,10 +214,7 @@ void Assessment<Pose>::predict(Explanation<Pose>& now) {
     found_.covariances[composed[i]] = odometry_says(composed[i], now.scale.odometry);
   });
   solve(now, solved, !alone);
-  found_.held.assign(now.accepted.size(), Matrix::Zero());
-  for (std::size_t k = 0; k < now.accepted.size(); ++k) {
-    if (now.accepted[k]) found_.held[k] = information(now, static_cast<Index>(k));
-  }
+  found_.held = accepted_information(now);
 }
 
 // The covariance of a loop's residual where nothing but odometry is known.

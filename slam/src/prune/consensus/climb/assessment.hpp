@@ -99,7 +99,7 @@ class Assessment {
   Matrix information(const Explanation<Pose>& now, Index loop) const {
     return objective_.information(now, *found_.graph, loop);
   }
-  void inform(const Explanation<Pose>& now);
+  std::vector<Matrix> accepted_information(const Explanation<Pose>& now) const;
   Matrix uncertainty(const Explanation<Pose>& now, Index loop) const;
   Misfit misfit(const Explanation<Pose>& now, Index loop) const;
   Belief<Pose> belief(Index loop) const {
