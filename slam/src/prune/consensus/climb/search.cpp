@@ -64,13 +64,14 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole) {
   return standpoints;
 }
 
-// Scales of the loops that were found may have other peaks: sought from each start, all loops
-// known.
+// Scales of the loops that were found may have other peaks: each start leads to one where no other
+// loops are on the way.
 template <class Pose>
-void climb_from_the_best(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
-  const Explanation<Pose> best = *std::ranges::max_element(found, {}, &Explanation<Pose>::evidence);
+void settle_on_the_best(const Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
+  const auto best = std::ranges::max_element(found, {}, &Explanation<Pose>::evidence)->accepted;
+  Climb<Pose> afresh = climb.on(climb.objective());
   climb_from_each_start(
-      true, [&](const CovarianceScale& scale) { found.push_back(climb.from(best, scale)); });
+      true, [&](const CovarianceScale& scale) { found.push_back(afresh.settled_on(best, scale)); });
 }
 
 // Of all loops or of a sample, whose scales are sought again with all.
@@ -88,7 +89,7 @@ std::vector<Explanation<Pose>> search_part(Climb<Pose>& climb, bool sampled) {
   };
   if (astray()) {
     climb_from_each_start(calibrate, try_from);
-    if (calibrate && !sampled && !astray()) climb_from_the_best(climb, found);
+    if (calibrate && !sampled && !astray()) settle_on_the_best(climb, found);
   }
   if (calibrate && astray()) {
     for (const auto& start : gaining_starts(climb)) unless_it_breaks_down(try_from, start);
