@@ -57,13 +57,14 @@ void Snapshot<Pose>::explain(const std::vector<const Snapshot*>& others, bool ev
   judge();
 }
 
-// As the batch does, which finds the density of near pairs at every assessment.
+// As the batch does, which finds the density of near pairs at every assessment, but not to the last
+// nats.
 template <class Pose>
 void Snapshot<Pose>::climb_from_nothing(bool everywhere) {
   const double before = work_;
   const auto nearness_before = assessment().nearness_found();
   if (everywhere) {
-    for (const auto& peak : search(*climb_)) {
+    for (const auto& peak : search(*climb_, false)) {
       surpassed_ = add(peak) || surpassed_;
     }
   } else {

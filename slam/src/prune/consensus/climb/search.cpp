@@ -30,9 +30,6 @@ void keep_peaks(std::vector<Explanation<Pose>>& found) {
   found = std::move(peaks);
 }
 
-template <class Pose>
-std::vector<Explanation<Pose>> search_part(Climb<Pose>& climb, bool sampled);
-
 // As numbers of a sample say which loops of all those are.
 KnownBefore known_of(const std::vector<Index>& sampled, std::size_t all) {
   KnownBefore known{.loops = {}, .vertex = [](Index vertex) { return std::optional(vertex); }};
@@ -52,7 +49,7 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole) {
   if (sampled.size() < kLeastSample) return standpoints;
   const Objective<Pose> part = objective.of(sampled);
   Climb<Pose> climb = whole.on(part);
-  const auto found = search_part(climb, true);
+  const auto found = search(climb, false);
   if (accepted_by(found.front()) < kFewLoops) return standpoints;
   const double least = found.front().evidence - log_odds_of(1.0 - whole.options().significance);
   const KnownBefore known = known_of(sampled, all.loops.size());
@@ -74,9 +71,10 @@ void settle_on_the_best(const Climb<Pose>& climb, std::vector<Explanation<Pose>>
       true, [&](const CovarianceScale& scale) { found.push_back(afresh.settled_on(best, scale)); });
 }
 
-// Of all loops or of a sample, whose scales are sought again with all.
+}  // namespace
+
 template <class Pose>
-std::vector<Explanation<Pose>> search_part(Climb<Pose>& climb, bool sampled) {
+std::vector<Explanation<Pose>> search(Climb<Pose>& climb, bool to_the_last) {
   const bool calibrate = climb.options().calibrate;
   std::vector<Explanation<Pose>> found;
   const auto try_from = [&](const auto& start) { found.push_back(climb.from(start)); };
@@ -89,7 +87,7 @@ std::vector<Explanation<Pose>> search_part(Climb<Pose>& climb, bool sampled) {
   };
   if (astray()) {
     climb_from_each_start(calibrate, try_from);
-    if (calibrate && !sampled && !astray()) settle_on_the_best(climb, found);
+    if (calibrate && to_the_last && !astray()) settle_on_the_best(climb, found);
   }
   if (calibrate && astray()) {
     for (const auto& start : gaining_starts(climb)) unless_it_breaks_down(try_from, start);
@@ -99,14 +97,7 @@ std::vector<Explanation<Pose>> search_part(Climb<Pose>& climb, bool sampled) {
   return found;
 }
 
-}  // namespace
-
-template <class Pose>
-std::vector<Explanation<Pose>> search(Climb<Pose>& climb) {
-  return search_part(climb, false);
-}
-
-template std::vector<Explanation<Pose2>> search(Climb<Pose2>&);
-template std::vector<Explanation<Pose3>> search(Climb<Pose3>&);
+template std::vector<Explanation<Pose2>> search(Climb<Pose2>&, bool);
+template std::vector<Explanation<Pose3>> search(Climb<Pose3>&, bool);
 
 }  // namespace isotherm::slam::detail
