@@ -18,6 +18,16 @@ bool is_part(const std::vector<bool>& part, const std::vector<bool>& whole) {
   return true;
 }
 
+// All loops as accurate as most.
+template <class Pose>
+Explanation<Pose> unlearnt(std::vector<bool> accepted, const CovarianceScale& scale) {
+  const std::size_t loops = accepted.size();
+  Explanation<Pose> explanation{.accepted = std::move(accepted), .scale = scale};
+  explanation.shares.loops[0] = static_cast<double>(loops);
+  explanation.weights.resize(loops);
+  return explanation;
+}
+
 // Takes the scales of a lesson or of another explanation.
 template <class Found>
 auto scales_of(const Found& found) {
@@ -42,6 +52,15 @@ Climb<Pose>::Climb(const Objective<Pose>& objective, ConsensusOptions options, R
 template <class Pose>
 Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
   start(scale);
+  return climb();
+}
+
+template <class Pose>
+Explanation<Pose> Climb<Pose>::from(const Explanation<Pose>& known, const CovarianceScale& scale) {
+  now_ = unlearnt<Pose>(known.accepted, scale);
+  assessment_.start_over();
+  assessment_.stand_on(known.layout);
+  begin();
   return climb();
 }
 
@@ -175,13 +194,9 @@ double Climb<Pose>::summit() const {
   return summit;
 }
 
-// All loops as accurate as most.
 template <class Pose>
 void Climb<Pose>::start(const CovarianceScale& scale) {
-  const std::size_t loops = objective_.stated().reduced.loops.size();
-  now_ = {.accepted = std::vector<bool>(loops), .scale = scale};
-  now_.shares.loops[0] = static_cast<double>(loops);
-  now_.weights.resize(loops);
+  now_ = unlearnt<Pose>(std::vector<bool>(objective_.stated().reduced.loops.size()), scale);
   assessment_.start_over();
   begin();
   if (scale == CovarianceScale{}) nothing_ = now_;

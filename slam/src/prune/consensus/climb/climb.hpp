@@ -41,6 +41,9 @@ class Climb {
   /// The same from there.
   Explanation<Pose> from(Standpoint<Pose> standpoint);
 
+  /// The same from the loops and the map of `known`, with `scale` as the factors.
+  Explanation<Pose> from(const Explanation<Pose>& known, const CovarianceScale& scale);
+
   /// Goes on from there: loops are accepted and dropped and scales learnt while that helps, without
   /// looking for other scales. Later climbs know the peak.
   Explanation<Pose> resume(Standpoint<Pose> standpoint);

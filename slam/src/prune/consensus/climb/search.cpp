@@ -61,14 +61,18 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole) {
   return standpoints;
 }
 
-// Scales of the loops that were found may have other peaks: each start leads to one where no other
-// loops are on the way.
+// Scales of the loops that were found may have other peaks: sought from each start, all loops
+// known; of few loops, which leave scales uncertain, once more by climbs that no other loops or
+// peaks lead astray.
 template <class Pose>
-void settle_on_the_best(const Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
-  const auto best = std::ranges::max_element(found, {}, &Explanation<Pose>::evidence)->accepted;
+void climb_from_the_best(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
+  const Explanation<Pose> best = *std::ranges::max_element(found, {}, &Explanation<Pose>::evidence);
+  const bool few = accepted_by(best) < kLeastSample;
   Climb<Pose> afresh = climb.on(climb.objective());
-  climb_from_each_start(
-      true, [&](const CovarianceScale& scale) { found.push_back(afresh.settled_on(best, scale)); });
+  climb_from_each_start(true, [&](const CovarianceScale& scale) {
+    found.push_back(climb.from(best, scale));
+    if (few) found.push_back(afresh.settled_on(best.accepted, scale));
+  });
 }
 
 }  // namespace
@@ -87,7 +91,7 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, bool to_the_last) {
   };
   if (astray()) {
     climb_from_each_start(calibrate, try_from);
-    if (calibrate && to_the_last && !astray()) settle_on_the_best(climb, found);
+    if (calibrate && to_the_last && !astray()) climb_from_the_best(climb, found);
   }
   if (calibrate && astray()) {
     for (const auto& start : gaining_starts(climb)) unless_it_breaks_down(try_from, start);
