@@ -79,22 +79,28 @@ void OnlineEngine<Pose>::go_on() {
   if (loops_ == 0) return;
   const auto work = most_work(rows_.size());
   const bool few = searched_ <= kFew;
-  const double until = batch_work(loops_) / (kUntil * static_cast<double>(rows_.size()));
+  const double until = search_work(loops_) / (kUntil * static_cast<double>(rows_.size()));
   search_everywhere(!map_ ? kNoLimit : few ? work : std::min(work, until));
   follow_up(std::min(following_credit(), work));
 }
 
-// Of one batch on so many loops: as many pieces as in the last search from every start, with as
-// many more links in each as there are more loops.
+// Of one search from every start on so many loops: as many pieces as in the last one, with as many
+// more links in each as there are more loops.
 template <class Pose>
-double OnlineEngine<Pose>::batch_work(Index loops) const {
-  const double growth = static_cast<double>(loops) / static_cast<double>(batch_of_);
-  return batch_work_.constant + batch_work_.growing * growth;
+double OnlineEngine<Pose>::search_work(Index loops) const {
+  const double growth = static_cast<double>(loops) / static_cast<double>(search_of_);
+  return search_work_.constant + search_work_.growing * growth;
+}
+
+// What all searches may take for so many loops.
+template <class Pose>
+double OnlineEngine<Pose>::allowance(Index loops) const {
+  return options_.effort * searches_a_batch_takes_ * search_work(loops);
 }
 
 template <class Pose>
 double OnlineEngine<Pose>::following_credit() const {
-  return kFollowing * options_.effort * batch_work(loops_) - following_work_;
+  return kFollowing * allowance(loops_) - following_work_;
 }
 
 // All work that is done stays within what effort allows, of a batch on no more loops than twice
@@ -103,8 +109,9 @@ template <class Pose>
 bool OnlineEngine<Pose>::is_search_due() const {
   if (loops_ < kFirst || loops_ == searched_) return false;
   if (loops_ >= kMostGrowth * searched_) return true;
-  const double batch = batch_work(std::min(loops_, kGrowth * searched_));
-  if (searches_work_ + following_work_ + batch > options_.effort * batch) return false;
+  const Index known = std::min(loops_, kGrowth * searched_);
+  const double spent = searches_work_ + following_work_;
+  if (spent + search_work(known) > allowance(known)) return false;
   return loops_ >= kGrowth * searched_ || is_quiet();
 }
 
@@ -113,7 +120,7 @@ bool OnlineEngine<Pose>::is_search_due() const {
 template <class Pose>
 bool OnlineEngine<Pose>::is_quiet() const {
   const auto calls = static_cast<double>(static_cast<Index>(rows_.size()) - 1 - last_loop_);
-  return calls * most_work(rows_.size()) >= batch_work(loops_);
+  return calls * most_work(rows_.size()) >= search_work(loops_);
 }
 
 // The first loop's, to hold others against; then from every start, where loops have grown enough.
@@ -128,8 +135,9 @@ void OnlineEngine<Pose>::search_everywhere(double budget) {
   if (!run(*everywhere_, budget)) return;
   const auto map = everywhere_->map;
   if (map->explained()) {
-    batch_work_ = map->batch_work();
-    batch_of_ = everywhere_->loops;
+    search_work_ = map->search_work();
+    searches_a_batch_takes_ = map->searches_a_batch_takes();
+    search_of_ = everywhere_->loops;
   }
   searches_work_ += everywhere_->task->spent();
   everywhere_.reset();

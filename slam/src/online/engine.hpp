@@ -64,7 +64,8 @@ class OnlineEngine {
   void search_everywhere(double budget);
   bool is_search_due() const;
   bool is_quiet() const;
-  double batch_work(Index loops) const;
+  double search_work(Index loops) const;
+  double allowance(Index loops) const;
   double following_credit() const;
   void follow_up(double budget);
   Search begin(bool everywhere) const;
@@ -96,11 +97,12 @@ class OnlineEngine {
   std::map<Index, Standing> standings_;  // of these
   std::optional<Search> everywhere_;
   std::optional<Search> next_;
-  Index searched_ = 0;                             // loops at the last search from every start
-  typename Snapshot<Pose>::BatchWork batch_work_;  // at that
-  Index batch_of_ = 1;                             // loops that it had
-  double searches_work_ = 0.0;                     // of all of those
-  double following_work_ = 0.0;                    // of following up
+  Index searched_ = 0;                               // loops at the last search from every start
+  typename Snapshot<Pose>::SearchWork search_work_;  // at that
+  double searches_a_batch_takes_ = 1.0;
+  Index search_of_ = 1;          // loops that it had
+  double searches_work_ = 0.0;   // of all of those
+  double following_work_ = 0.0;  // of following up
 };
 
 extern template class OnlineEngine<Pose2>;

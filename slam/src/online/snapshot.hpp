@@ -25,14 +25,16 @@ class Snapshot {
   /// @throws NumericalError, Cancelled
   void explain(const std::vector<const Snapshot*>& others, bool everywhere, const Pace& pace);
 
-  /// Work that the batch would take on the same graph: on the density of near pairs, which takes
-  /// the same on every graph, and the rest, which grows with loops. Only where explained
-  /// everywhere; of the first loop, what its one climb took.
-  struct BatchWork {
+  /// Work of the search, with the density of near pairs found at every assessment, as the batch
+  /// does: on that, which takes the same on every graph, and the rest, which grows with loops. Only
+  /// where explained everywhere; of the first loop, what its one climb took.
+  struct SearchWork {
     double constant = 0.0;
     double growing = 0.0;
   };
-  const BatchWork& batch_work() const noexcept { return batch_work_; }
+  const SearchWork& search_work() const noexcept { return search_work_; }
+  /// A batch takes as much as so many.
+  double searches_a_batch_takes() const noexcept { return searches_a_batch_takes_; }
 
   /// False where no loop can be judged by evidence: then there is nothing but graph() and verdicts.
   bool explained() const noexcept { return climb_.has_value(); }
@@ -75,7 +77,8 @@ class Snapshot {
   bool found_ = false;
   bool surpassed_ = false;
   double work_ = 0.0;
-  BatchWork batch_work_;
+  SearchWork search_work_;
+  double searches_a_batch_takes_ = 1.0;
   std::size_t nearness_of_ = 0;  // edges of the graph that the density of near pairs is of
   PruneResult verdicts_;
 };

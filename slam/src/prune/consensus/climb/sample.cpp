@@ -25,6 +25,7 @@ std::vector<Index> sample(const ReducedGraph<Pose>& graph, Index window) {
     }
     if (stretch % kBatchGrowth == kBatchGrowth / 2) chosen.push_back(loop);
   }
+  if (chosen.size() < kLeastSample) return {};
   std::ranges::sort(chosen);
   return chosen;
 }

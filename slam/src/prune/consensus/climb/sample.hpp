@@ -7,7 +7,8 @@
 namespace isotherm::slam::detail {
 
 /// Numbers of the loops, ascending, that were closed in every kBatchGrowth-th stretch of the way:
-/// where one lies there, so do others within `window` vertices, so that runs stay together.
+/// where one lies there, so do others within `window` vertices, so that runs stay together. None
+/// where they are too few.
 template <class Pose>
 std::vector<Index> sample(const ReducedGraph<Pose>& graph, Index window);
 

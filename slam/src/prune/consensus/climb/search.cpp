@@ -46,7 +46,7 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole) {
   const auto& all = objective.stated().reduced;
   const auto sampled = sample(all, whole.options().window);
   std::vector<Standpoint<Pose>> standpoints;
-  if (sampled.size() < kLeastSample) return standpoints;
+  if (sampled.empty()) return standpoints;
   const Objective<Pose> part = objective.of(sampled);
   Climb<Pose> climb = whole.on(part);
   const auto found = search(climb, false);
