@@ -2,14 +2,16 @@
 
 #include <vector>
 
+#include "prune/consensus/constants.hpp"
 #include "prune/consensus/estimate/reduced_graph.hpp"
 
 namespace isotherm::slam::detail {
 
-/// Numbers of the loops, ascending, that were closed in every kBatchGrowth-th stretch of the way:
+/// Numbers of the loops, ascending, that were closed in every so many-th stretch of the way:
 /// where one lies there, so do others within `window` vertices, so that runs stay together. None
 /// where they are too few.
 template <class Pose>
-std::vector<Index> sample(const ReducedGraph<Pose>& graph, Index window);
+std::vector<Index> sample(const ReducedGraph<Pose>& graph, Index window,
+                          std::size_t every = kBatchGrowth);
 
 }  // namespace isotherm::slam::detail

@@ -41,10 +41,12 @@ KnownBefore known_of(const std::vector<Index>& sampled, std::size_t all) {
 // Where the climbs on a sample of the loops ended; none of few loops, or where few are true: these
 // tell nothing of scales.
 template <class Pose>
-std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole) {
+std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole, bool soon) {
   const Objective<Pose>& objective = whole.objective();
   const auto& all = objective.stated().reduced;
-  const auto sampled = sample(all, whole.options().window);
+  const std::size_t every =
+      soon ? std::min(kBatchGrowth, all.loops.size() / (2 * kLeastSample) + 1) : kBatchGrowth;
+  const auto sampled = sample(all, whole.options().window, every);
   std::vector<Standpoint<Pose>> standpoints;
   if (sampled.empty()) return standpoints;
   const Objective<Pose> part = objective.of(sampled);
@@ -82,7 +84,7 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, bool to_the_last) {
   const bool calibrate = climb.options().calibrate;
   std::vector<Explanation<Pose>> found;
   const auto try_from = [&](const auto& start) { found.push_back(climb.from(start)); };
-  for (const auto& standpoint : standpoints(climb)) {
+  for (const auto& standpoint : standpoints(climb, !to_the_last)) {
     unless_it_breaks_down(try_from, standpoint);
   }
   const auto astray = [&] {

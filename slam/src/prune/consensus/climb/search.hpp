@@ -8,8 +8,8 @@ namespace isotherm::slam::detail {
 
 /// The explanations that `climb` finds for all loops of its objective, the best first, each once;
 /// that none is true is one. Of many loops a sample is searched before, in the same way: evidence
-/// is a sum over loops, so that what is decisively worse there is not followed. `to_the_last`: other
-/// peaks of scales that explain the same loops a little better are sought, too.
+/// is a sum over loops, so that what is decisively worse there is not followed. `to_the_last`:
+/// other peaks of scales that explain the same loops a little better are sought, too.
 /// @throws NumericalError, Cancelled
 template <class Pose>
 std::vector<Explanation<Pose>> search(Climb<Pose>& climb, bool to_the_last = true);
