@@ -41,11 +41,9 @@ KnownBefore known_of(const std::vector<Index>& sampled, std::size_t all) {
 // Where the climbs on a sample of the loops ended; none of few loops, or where few are true: these
 // tell nothing of scales.
 template <class Pose>
-std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole, bool soon) {
+std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole, std::size_t every) {
   const Objective<Pose>& objective = whole.objective();
   const auto& all = objective.stated().reduced;
-  const std::size_t every =
-      soon ? std::min(kBatchGrowth, all.loops.size() / (2 * kLeastSample) + 1) : kBatchGrowth;
   const auto sampled = sample(all, whole.options().window, every);
   std::vector<Standpoint<Pose>> standpoints;
   if (sampled.empty()) return standpoints;
@@ -82,9 +80,11 @@ void climb_from_the_best(Climb<Pose>& climb, std::vector<Explanation<Pose>>& fou
 template <class Pose>
 std::vector<Explanation<Pose>> search(Climb<Pose>& climb, bool to_the_last) {
   const bool calibrate = climb.options().calibrate;
+  const std::size_t loops = climb.objective().stated().reduced.loops.size();
+  const std::size_t least = std::min(kBatchGrowth, 1 + loops / (2 * kLeastSample));
   std::vector<Explanation<Pose>> found;
   const auto try_from = [&](const auto& start) { found.push_back(climb.from(start)); };
-  for (const auto& standpoint : standpoints(climb, !to_the_last)) {
+  for (const auto& standpoint : standpoints(climb, to_the_last ? kBatchGrowth : least)) {
     unless_it_breaks_down(try_from, standpoint);
   }
   const auto astray = [&] {
