@@ -33,7 +33,7 @@ void Crowd::add_strangers(Star& star, Index node, const std::vector<bool>& among
   }
   const double radius = kAround * absence_.reach();
   grid_.visit_near(middle, radius, [&](Index other, const Point& position) {
-    if (other == node || !among[other] || (position - middle).norm() > radius) return;
+    if (other == node || !among[other] || distance_between(position, middle) > radius) return;
     if (!has_range(problem_, node, other)) star.strangers.push_back(position);
   });
   star.absence = &absence_;
@@ -43,7 +43,7 @@ double Crowd::absence_cost(Index node, const Point& place, const std::vector<boo
   double cost = 0.0;
   if (!(absence_.reach() > 0.0)) return cost;
   grid_.visit_near(place, absence_.reach(), [&](Index other, const Point& position) {
-    const double distance = (place - position).norm();
+    const double distance = distance_between(place, position);
     if (distance >= absence_.reach() || other == node || !among[other]) return;
     if (!has_range(problem_, node, other)) cost += absence_.cost(distance);
   });

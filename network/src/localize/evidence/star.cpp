@@ -133,7 +133,7 @@ std::vector<Candidate> candidates(const Star& star, double apart) {
   std::vector<Candidate> fresh;
   for (const auto& candidate : all) {
     const bool is_fresh = std::none_of(fresh.begin(), fresh.end(), [&](const Candidate& other) {
-      return (other.position - candidate.position).norm() < apart;
+      return distance_between(other.position, candidate.position) < apart;
     });
     if (is_fresh) fresh.push_back(candidate);
     if (fresh.size() == kRefined) break;
@@ -147,7 +147,7 @@ double Star::cost(const Point& place) const {
   double sum = 0.0;
   for (const auto& arm : arms) sum += arm.cost(arm.residual(place));
   if (absence == nullptr) return sum;
-  for (const auto& stranger : strangers) sum += absence->cost((stranger - place).norm());
+  for (const auto& stranger : strangers) sum += absence->cost(distance_between(stranger, place));
   return sum;
 }
 

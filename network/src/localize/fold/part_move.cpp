@@ -164,7 +164,7 @@ class Trial {
       sum += crowd_.absence_cost(v, place, others_);
       before.visit_near(place, reach, [&](Index other, const Point& position) {
         if (has_range(problem_, v, other)) return;
-        sum += evidence_.absence.cost((position - place).norm());
+        sum += evidence_.absence.cost(distance_between(position, place));
       });
       before.insert(v, place);
     }

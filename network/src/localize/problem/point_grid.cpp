@@ -15,7 +15,7 @@ std::vector<std::pair<std::int32_t, std::int32_t>> near_pairs(
     found.clear();
     const Point place = points.col(v);
     grid.visit_near(place, radius, [&](std::int32_t other, const Point& position) {
-      if (other <= v || !((position - place).norm() <= radius)) return;
+      if (other <= v || !(distance_between(position, place) <= radius)) return;
       if (!wanted || wanted(v, other)) found.push_back(other);
     });
     std::sort(found.begin(), found.end());

@@ -111,14 +111,6 @@ double extent(const Placement& placement) {
   return box.isEmpty() ? 0.0 : box.diagonal().norm();
 }
 
-bool are_placed(const Placement& placement, Index a, Index b) {
-  return placement.placed[a] && placement.placed[b];
-}
-
-double distance_of(const Placement& placement, Index a, Index b) {
-  return (placement.positions.col(a) - placement.positions.col(b)).norm();
-}
-
 double deviation(const Placement& placement, const RangePair& pair) {
   return (distance_of(placement, pair.from, pair.to) - pair.distance) / pair.sigma;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include <Eigen/Core>
@@ -56,13 +57,28 @@ Index placed_count(const Placement& placement);
 double extent(const Placement& placement);
 
 /// Whether both have one.
-bool are_placed(const Placement& placement, Index a, Index b);
+inline bool are_placed(const Placement& placement, Index a, Index b) {
+  return placement.placed[a] && placement.placed[b];
+}
 inline bool is_placed(const Placement& placement, const RangePair& pair) {
   return are_placed(placement, pair.from, pair.to);
 }
 
+/// Between two points of so many coordinates; the innermost of all loops.
+inline double distance_between(const double* a, const double* b, Eigen::Index dimension) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < dimension; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum);
+}
+inline double distance_between(const Point& a, const Point& b) {
+  return distance_between(a.data(), b.data(), a.size());
+}
+
 /// Between two placed nodes.
-double distance_of(const Placement& placement, Index a, Index b);
+inline double distance_of(const Placement& placement, Index a, Index b) {
+  const auto& at = placement.positions;
+  return distance_between(at.col(a).data(), at.col(b).data(), at.rows());
+}
 
 /// (distance between the places of a pair - its range) / sigma.
 double deviation(const Placement& placement, const RangePair& pair);

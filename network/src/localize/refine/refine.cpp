@@ -77,7 +77,7 @@ class SparseSystem {
 
   double cost() const {
     double sum = 0.0;
-    for (const auto& spring : springs_) sum += length_cost_(spring, arm(spring).norm()).cost;
+    for (const auto& spring : springs_) sum += length_cost_(spring, distance_of(placement_, spring.from, spring.to)).cost;
     return sum;
   }
 
@@ -278,16 +278,17 @@ RefineOutcome refine_mixture(const RangeProblem& problem, const Absence& absence
   if (system.unknowns() == 0) return {};
   const double excess = typical_excess(problem.typical_sigma, model.longest);
   double damping = kFirstDamping;
+  double cost = system.cost();
   for (int k = 0; k < max_iterations; ++k) {
     const Progress done{"kinds of ranges", static_cast<std::uint64_t>(k),
                         static_cast<std::uint64_t>(max_iterations)};
     if (progress && !progress(done)) throw Cancelled();
-    double cost = system.cost();
     const double before = cost;
     const bool moved = spectral::damped_step(system, damping, cost);
     learn_kinds(statistics_of(model, springs, placement), excess, problem.typical_sigma, too_long,
                 model);
-    if (!moved || before - system.cost() < 2.0 * kNoGain) return {k + 1, true};
+    cost = system.cost();
+    if (!moved || before - cost < 2.0 * kNoGain) return {k + 1, true};
   }
   return {max_iterations, false};
 }
