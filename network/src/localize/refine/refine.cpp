@@ -77,7 +77,8 @@ class SparseSystem {
 
   double cost() const {
     double sum = 0.0;
-    for (const auto& spring : springs_) sum += length_cost_(spring, distance_of(placement_, spring.from, spring.to)).cost;
+    for (const auto& spring : springs_)
+      sum += length_cost_(spring, distance_of(placement_, spring.from, spring.to)).cost;
     return sum;
   }
 
@@ -99,7 +100,8 @@ class SparseSystem {
       springs_.push_back(spring);
       if (from >= 0 && to >= 0 && spring.couples) pairs.emplace_back(from, to);
     }
-    return {problem_.dimension, count, pairs};
+    // Networks fill their factor as fields do, not as trajectories: dense blocks pay.
+    return {problem_.dimension, count, pairs, spectral::FactorForm::supernodal};
   }
 
   Point arm(const Spring& spring) const {

@@ -38,9 +38,11 @@ class Search {
     constexpr double kLikely = 0.5;
     if (options_.method != LocalizeMethod::robust) return started(trusted_, trusted_, Errors::any);
     const auto likely = likely_pairs(problem_, kLikely, options_);
-    consider(started(likely, likely, Errors::any));
+    has_false_ = std::find(likely.begin(), likely.end(), false) != likely.end();
+    const auto supported = has_false_ ? supported_pairs(problem_, likely) : likely;
+    consider(started(supported, supported, Errors::any));
     unfold_best();
-    if (!is_enough()) try_other_starts(likely);
+    if (!is_enough()) try_other_starts(likely, supported);
     for (int round = 0; round < kMostRounds && consider_redrawn(); ++round) unfold_best();
     for (int round = 0; round < kMostRounds && consider(loosened(best_)); ++round) unfold_best();
     return std::move(best_);
@@ -52,11 +54,9 @@ class Search {
     return in_frame(map_by_paths(free_, paths, pairs, errors, gate_, options_));
   }
 
-  void try_other_starts(const std::vector<bool>& likely) {
-    has_false_ = std::find(likely.begin(), likely.end(), false) != likely.end();
+  void try_other_starts(const std::vector<bool>& likely, const std::vector<bool>& supported) {
     if (has_false_) {
-      const auto supported = supported_pairs(problem_, likely);
-      consider(started(supported, supported, Errors::any));
+      consider(started(likely, likely, Errors::any));
       consider(started(supported, supported, Errors::too_long));
     }
     consider(started(trusted_, trusted_, Errors::too_long));
