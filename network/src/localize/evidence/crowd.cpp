@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "localize/constants.hpp"
+
 namespace isotherm::network::detail {
 
 Crowd::Crowd(const RangeProblem& problem, const Placement& placement, const Absence& absence)
@@ -21,7 +23,6 @@ void Crowd::insert(Index node, const Point& position) {
 }
 
 void Crowd::add_strangers(Star& star, Index node, const std::vector<bool>& among) const {
-  constexpr double kAround = 2.5;  // reaches
   if (!(absence_.reach() > 0.0) || star.arms.empty()) return;
   // Where most neighbours are. Places far from there have too few strangers, which makes them
   // look better than they are, not worse.
@@ -31,7 +32,7 @@ void Crowd::add_strangers(Star& star, Index node, const std::vector<bool>& among
     for (const auto& arm : star.arms) values.push_back(arm.end[i]);
     middle[i] = lower_median(std::move(values));
   }
-  const double radius = kAround * absence_.reach();
+  const double radius = kStrangersAround * absence_.reach();
   grid_.visit_near(middle, radius, [&](Index other, const Point& position) {
     if (other == node || !among[other] || distance_between(position, middle) > radius) return;
     if (!has_range(problem_, node, other)) star.strangers.push_back(position);

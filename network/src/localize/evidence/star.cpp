@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include "localize/constants.hpp"
 #include "localize/problem/geman_mcclure.hpp"
 
 namespace isotherm::network::detail {
@@ -170,7 +171,6 @@ Star star(const RangeProblem& problem, const Evidence& evidence, const Placement
 }
 
 std::optional<Multilateration> multilaterate(const Star& star) {
-  constexpr double kApart = 4.0;  // standard deviations: nearer places are one
   if (star.arms.empty()) return std::nullopt;
   std::vector<double> sigmas;
   for (const auto& arm : star.arms) sigmas.push_back(arm.sigma);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "localize/constants.hpp"
+
 namespace isotherm::network {
 namespace {
 
@@ -11,8 +13,6 @@ using std::numbers::pi;
 
 // A factor of ten: the deviation of everything that has a scale and nothing is known of.
 constexpr double kFactorOfTen = std::numbers::ln10;
-
-constexpr double kTold = 3.0;  // deviations: what noise hardly ever exceeds
 
 // A range whose prediction without it has more than so many times its own variance is checked by
 // nothing: rounding of the system's inverse.
@@ -192,7 +192,7 @@ void learn_kinds(const RangeStatistics& statistics, double typical_excess, doubl
     const double likeliest = std::exp(
         most_likely_log_mean(count[kTooLong], statistics.excess, std::log(typical_excess)));
     // An excess that noise hides is noise.
-    model.excess = std::max(likeliest, kTold * sigma);
+    model.excess = std::max(likeliest, detail::kHardlyNoise * sigma);
   }
 }
 

@@ -11,13 +11,10 @@
 #include <Eigen/SVD>
 
 #include "isotherm/base/error.hpp"
+#include "localize/constants.hpp"
 
 namespace isotherm::network::detail {
 namespace {
-
-// Standard deviation, as a part of the typical distance, of ranges that come
-// without one, until the residuals tell.
-constexpr double kProvisionalNoise = 0.05;
 
 void merge_pairs(RangeProblem& problem) {
   std::map<std::pair<Index, Index>, Index> number_of;
@@ -185,11 +182,10 @@ Eigen::VectorXd extents(const Eigen::MatrixXd& points) {
 
 bool span_space(const RangeProblem& problem, const Placement& placement,
                 const std::vector<Index>& nodes) {
-  constexpr double kClear = 3.0;  // standard deviations of a range
   constexpr double kFlat = 1e-9;  // of the nodes' extent: a line up to rounding
   if (static_cast<int>(nodes.size()) <= problem.dimension) return false;
   const Eigen::VectorXd values = extents(placement.positions(Eigen::all, nodes));
-  const double noise = problem.sigmas.empty() ? 0.0 : kClear * problem.typical_sigma;
+  const double noise = problem.sigmas.empty() ? 0.0 : kHardlyNoise * problem.typical_sigma;
   return values.minCoeff() > std::max(noise, kFlat * values.maxCoeff());
 }
 

@@ -8,6 +8,7 @@
 
 #include "isotherm/base/error.hpp"
 #include "isotherm/spectral/sparse/damped_step.hpp"
+#include "localize/constants.hpp"
 #include "localize/problem/geman_mcclure.hpp"
 #include "localize/problem/point_grid.hpp"
 #include "localize/problem/range_problem.hpp"
@@ -186,7 +187,7 @@ constexpr double kCouples = 8.0;
 constexpr double kFirstDamping = 1e-6;
 // Standard deviations that a node moves at a time: what is far outside of the noise has no
 // curvature, and would throw a node that hangs on little to where nothing fits.
-constexpr double kLongestStep = 4.0;
+constexpr double kLongestStep = kApart;
 constexpr double kNoGain = 1e-3;  // nats: what nobody can tell apart
 
 std::vector<Spring> all_springs(const RangeProblem& problem, const Placement& placement) {

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "localize/constants.hpp"
 #include "localize/evidence/evidence.hpp"
 #include "localize/evidence/relocate.hpp"
 
 namespace isotherm::network::detail {
 namespace {
-
-constexpr double kReach = 4.0;  // widths beyond which a range has no say
 
 double deviation_of(const RangeProblem& problem, const Placement& placement, std::size_t k) {
   const auto& range = problem.ranges[k];
@@ -89,14 +88,14 @@ std::vector<bool> ranges_within(const RangeProblem& problem, const Placement& pl
 
 std::vector<bool> ranges_in_reach(const RangeProblem& problem, const std::vector<bool>& trusted,
                                   const Placement& placement, double width) {
-  auto use = ranges_within(problem, placement, std::pow(kReach * width, 2));
+  auto use = ranges_within(problem, placement, std::pow(kFarOutside * width, 2));
   for (std::size_t k = 0; k < use.size(); ++k) use[k] = use[k] && trusted[problem.pair_of[k]];
   return use;
 }
 
 RefineOutcome refine_at_width(const RangeProblem& problem, double width, int max_iterations,
                               const LocalizeOptions& options, Placement& placement) {
-  const auto use = ranges_within(problem, placement, std::pow(kReach * width, 2));
+  const auto use = ranges_within(problem, placement, std::pow(kFarOutside * width, 2));
   return refine_among(problem, use, width, max_iterations, options, placement);
 }
 

@@ -6,6 +6,7 @@
 #include <queue>
 #include <utility>
 
+#include "localize/constants.hpp"
 #include "localize/problem/absence.hpp"
 #include "localize/problem/classical_scaling.hpp"
 #include "localize/problem/point_grid.hpp"
@@ -124,10 +125,9 @@ class Unfolding {
 
   // From a loss that is wide beside the errors of the map down to that of a range.
   void run(double gate) {
-    constexpr double kStart = 1.5;   // typical ranges
-    constexpr double kLeast = 0.02;  // the same; narrower ones are for the refinement
-    const double narrow = std::max(std::sqrt(gate), kLeast * problem_.typical_distance / sigma_);
-    wide_ = std::max(narrow, kStart * problem_.typical_distance / sigma_);
+    const double narrow =
+        std::max(std::sqrt(gate), kUnfoldedMap * problem_.typical_distance / sigma_);
+    wide_ = std::max(narrow, kRoughMap * problem_.typical_distance / sigma_);
     for (double width = wide_; width > narrow; width *= 0.5) fit(width);
     fit(narrow);
   }
@@ -158,8 +158,6 @@ class Unfolding {
   }
 
   void add_repulsion(std::vector<Spring>& springs) const {
-    constexpr double kSigma = 0.05;  // reaches
-    constexpr double kWidth = 6.0;
     if (!(reach_ > 0.0)) return;
     std::vector<Index> nodes;
     for (Index v = 0; v < problem_.nodes; ++v) {
@@ -168,7 +166,7 @@ class Unfolding {
     const Eigen::MatrixXd points = placement_.positions(Eigen::all, nodes);
     for (const auto& [a, b] : near_pairs(points, reach_)) {
       if (has_range(problem_, nodes[a], nodes[b])) continue;
-      springs.push_back({nodes[a], nodes[b], reach_, kSigma * reach_, 0.0, kWidth});
+      springs.push_back({nodes[a], nodes[b], reach_, kRepulsion * reach_, 0.0, kRepulsionWidth});
     }
   }
 

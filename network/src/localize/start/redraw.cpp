@@ -4,13 +4,11 @@
 #include <utility>
 
 #include "isotherm/base/parallel.hpp"
+#include "localize/constants.hpp"
 #include "localize/start/anchor_frame.hpp"
 
 namespace isotherm::network::detail {
 namespace {
-
-// Steps from the middle of a region to its outermost nodes.
-constexpr int kSteps = 5;
 
 struct Region {
   std::vector<Index> nodes;
@@ -24,7 +22,7 @@ Region region_around(const RangeProblem& problem, const std::vector<bool>& trust
   std::vector<bool> seen(problem.nodes, false);
   seen[middle] = true;
   std::size_t last = 0;  // the first node of the last step
-  for (int step = 0; step < kSteps; ++step) {
+  for (int step = 0; step < kRegionSteps; ++step) {
     const std::size_t end = region.nodes.size();
     for (std::size_t k = last; k < end; ++k) {
       for (const auto& [vertex, edge] : problem.pair_graph.neighbours(region.nodes[k])) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "isotherm/spectral/edges/judge_edges.hpp"
+#include "localize/constants.hpp"
 #include "localize/evidence/crowd.hpp"
 #include "localize/evidence/evidence.hpp"
 #include "localize/fold/open_folds.hpp"
@@ -35,7 +36,6 @@ class Search {
   }
 
   Placement run() {
-    constexpr double kLikely = 0.5;
     if (options_.method != LocalizeMethod::robust) return started(trusted_, trusted_, Errors::any);
     const auto likely = likely_pairs(problem_, kLikely, options_);
     has_false_ = std::find(likely.begin(), likely.end(), false) != likely.end();
@@ -90,9 +90,8 @@ class Search {
   // From ranges whose deviation is a tenth of the typical one, halved again and again, down to what
   // is stated.
   Placement loosened(Placement map) const {
-    constexpr double kLoose = 0.1;
-    for (double factor = kLoose * problem_.typical_distance / problem_.typical_sigma; factor > 1.0;
-         factor *= 0.5) {
+    for (double factor = kLoosest * problem_.typical_distance / problem_.typical_sigma;
+         factor > 1.0; factor *= 0.5) {
       auto rough = problem_;
       rough.typical_sigma *= factor;
       for (auto& sigma : rough.sigmas) sigma *= factor;
@@ -129,7 +128,6 @@ class Search {
 
   // The better one of both, with the parts that are better in the other.
   bool merge(Placement map) {
-    constexpr double kGain = 2.0;  // of the worth, for which it is worth going on
     double reached = worth(problem_, trusted_, map);
     const double before = worth_;
     if (reached > worth_) {
@@ -147,7 +145,7 @@ class Search {
         }
       }
     }
-    return worth_ > before + kGain;
+    return worth_ > before + kBetter;
   }
 
   // Without anchors every map has its own.
@@ -173,7 +171,6 @@ class Search {
 
   // Whether hardly a trusted pair is contradicted.
   bool is_enough() const {
-    constexpr double kHardly = 0.005;
     double pairs = 0.0;
     double against = 0.0;
     for (std::size_t p = 0; p < problem_.pairs.size(); ++p) {
@@ -182,7 +179,7 @@ class Search {
       pairs += 1.0;
       if (squared_deviation(best_, pair) > gate_) against += 1.0;
     }
-    return against <= kHardly * pairs;
+    return against <= kHardlyAny * pairs;
   }
 
   const RangeProblem& problem_;
