@@ -41,7 +41,7 @@ class Firmness {
     do {
       release_nodes(std::move(changed));
       changed = release_folding_parts(lines);
-      lines = lines_near(problem_, std::exchange(released_, {}));
+      lines = within_steps(problem_, std::exchange(released_, {}), kRegionSteps, trusted_);
     } while (std::find(changed.begin(), changed.end(), true) != changed.end());
     return with_those_beside();
   }

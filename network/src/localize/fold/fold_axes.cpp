@@ -268,8 +268,4 @@ std::vector<Fold> find_folds(const RangeProblem& problem, const std::vector<bool
   return cheapest_of_alike(std::move(folds));
 }
 
-std::vector<bool> lines_near(const RangeProblem& problem, const std::vector<Index>& nodes) {
-  return within_steps(problem, nodes, kRegionSteps);
-}
-
 }  // namespace isotherm::network::detail

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "localize/constants.hpp"
 #include "localize/fold/fold_axes.hpp"
 #include "localize/fold/part_move.hpp"
 #include "localize/refine/robust_refine.hpp"
@@ -24,7 +25,7 @@ bool open_folds(const RangeProblem& problem, const std::vector<bool>& trusted, d
         problem, gains(problem, trusted, gate, evidence, options, placement, moves), placement);
     if (moved.empty()) break;
     any = true;
-    among = lines_near(problem, moved);
+    among = within_steps(problem, moved, kRegionSteps);
     refine_at_width(problem, std::sqrt(gate), kIterations, options, placement);
   }
   if (any) refine_robustly(problem, trusted, gate, options, placement);

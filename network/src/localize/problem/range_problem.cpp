@@ -117,17 +117,17 @@ double squared_deviation(const Placement& placement, const RangePair& pair) {
 }
 
 std::vector<bool> within_steps(const RangeProblem& problem, const std::vector<Index>& nodes,
-                               int steps) {
+                               int steps, const std::vector<bool>& usable) {
   std::vector<bool> result(problem.nodes, false);
   for (const Index v : nodes) result[v] = true;
   auto rim = nodes;
   for (int step = 0; step < steps; ++step) {
     std::vector<Index> next;
     for (const Index v : rim) {
-      for (const auto& neighbour : problem.pair_graph.neighbours(v)) {
-        if (result[neighbour.vertex]) continue;
-        result[neighbour.vertex] = true;
-        next.push_back(neighbour.vertex);
+      for (const auto& [vertex, edge] : problem.pair_graph.neighbours(v)) {
+        if (result[vertex] || (!usable.empty() && !usable[edge])) continue;
+        result[vertex] = true;
+        next.push_back(vertex);
       }
     }
     rim = std::move(next);

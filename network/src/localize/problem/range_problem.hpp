@@ -86,9 +86,10 @@ double deviation(const Placement& placement, const RangePair& pair);
 /// Its square.
 double squared_deviation(const Placement& placement, const RangePair& pair);
 
-/// Which nodes are at most so many ranges away from one of `nodes`.
+/// Which nodes are at most so many ranges away from one of `nodes`; only over the `usable` pairs,
+/// if these are given.
 std::vector<bool> within_steps(const RangeProblem& problem, const std::vector<Index>& nodes,
-                               int steps);
+                               int steps, const std::vector<bool>& usable = {});
 
 /// Whether there is a range between two nodes. O(degree).
 bool has_range(const RangeProblem& problem, Index a, Index b);

@@ -42,7 +42,7 @@ class Search {
     const auto supported = has_false_ ? supported_pairs(problem_, likely) : likely;
     consider(started(supported, supported, Errors::any));
     unfold_best();
-    if (!is_enough()) try_other_starts(likely, supported);
+    if (!is_enough()) try_other_starts(supported);
     for (int round = 0; round < kMostRounds && consider_redrawn(); ++round) unfold_best();
     for (int round = 0; round < kMostRounds && consider(loosened(best_)); ++round) unfold_best();
     return std::move(best_);
@@ -54,11 +54,8 @@ class Search {
     return in_frame(map_by_paths(free_, paths, pairs, errors, gate_, options_));
   }
 
-  void try_other_starts(const std::vector<bool>& likely, const std::vector<bool>& supported) {
-    if (has_false_) {
-      consider(started(likely, likely, Errors::any));
-      consider(started(supported, supported, Errors::too_long));
-    }
+  void try_other_starts(const std::vector<bool>& supported) {
+    if (has_false_) consider(started(supported, supported, Errors::too_long));
     consider(started(trusted_, trusted_, Errors::too_long));
     unfold_best();
     for (int round = 0; round < kMostRounds && try_without_contradicted(); ++round) unfold_best();
@@ -117,13 +114,28 @@ class Search {
     return merge(std::move(map));
   }
 
-  // Whether some region of it is better drawn anew.
+  // Whether some region of it is better drawn anew, of those that are not as they were last time.
   bool consider_redrawn() {
-    bool any = false;
-    for (const auto errors : {Errors::any, Errors::too_long}) {
-      any = merge(redraw(problem_, trusted_, errors, gate_, options_, best_)) || any;
+    const auto among = within_steps(problem_, changed_since(redrawn_), kRegionSteps, trusted_);
+    redrawn_ = best_;
+    const auto drawn = [&](Drawing drawing, Errors errors) {
+      return merge(redraw(problem_, trusted_, drawing, errors, among, gate_, options_, best_));
+    };
+    bool any = drawn(Drawing::paths, Errors::any);
+    any = drawn(Drawing::paths, Errors::too_long) || any;
+    return drawn(Drawing::springs, best_errors_) || any;
+  }
+
+  // Nodes that are elsewhere in the best map; all since there was none.
+  std::vector<Index> changed_since(const Placement& before) const {
+    std::vector<Index> changed;
+    for (Index v = 0; v < problem_.nodes; ++v) {
+      const bool is_same = !before.placed.empty() && before.placed[v] == best_.placed[v] &&
+                           (before.positions.col(v) - best_.positions.col(v)).norm() <=
+                               kApart * problem_.typical_sigma;
+      if (!is_same) changed.push_back(v);
     }
-    return any;
+    return changed;
   }
 
   // The better one of both, with the parts that are better in the other.
@@ -189,6 +201,7 @@ class Search {
   double gate_;
   const LocalizeOptions& options_;
   Placement best_;
+  Placement redrawn_;  // the best map when regions were drawn last
   double worth_ = -std::numeric_limits<double>::infinity();
   bool has_false_ = false;            // whether heat finds any false pair
   double unfolded_ = worth_;          // when folds were opened last
