@@ -8,18 +8,9 @@ namespace isotherm::network::detail {
 
 Crowd::Crowd(const RangeProblem& problem, const Placement& placement, const Absence& absence)
     : problem_(problem), absence_(absence), grid_(absence.reach()) {
-  rebuild(placement);
-}
-
-void Crowd::rebuild(const Placement& placement) {
-  grid_ = PointGrid(absence_.reach());
-  for (Index v = 0; v < problem_.nodes; ++v) {
-    if (placement.placed[v]) insert(v, placement.positions.col(v));
+  for (Index v = 0; v < problem.nodes && absence.reach() > 0.0; ++v) {
+    if (placement.placed[v]) grid_.insert(v, placement.positions.col(v));
   }
-}
-
-void Crowd::insert(Index node, const Point& position) {
-  if (absence_.reach() > 0.0) grid_.insert(node, position);
 }
 
 void Crowd::add_strangers(Star& star, Index node, const std::vector<bool>& among) const {

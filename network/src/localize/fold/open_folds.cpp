@@ -12,7 +12,6 @@ namespace isotherm::network::detail {
 bool open_folds(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
                 const LocalizeOptions& options, Placement& placement) {
   constexpr int kMostRounds = 6;
-  constexpr int kIterations = 12;
   bool any = false;
   std::vector<bool> among(problem.nodes, true);
   for (int round = 0; round < kMostRounds; ++round) {
@@ -26,7 +25,7 @@ bool open_folds(const RangeProblem& problem, const std::vector<bool>& trusted, d
     if (moved.empty()) break;
     any = true;
     among = within_steps(problem, moved, kRegionSteps);
-    refine_at_width(problem, std::sqrt(gate), kIterations, options, placement);
+    refine_at_width(problem, std::sqrt(gate), options, placement);
   }
   if (any) refine_robustly(problem, trusted, gate, options, placement);
   return any;

@@ -85,17 +85,10 @@ class Absence::Counts {
 Absence Absence::learn(const RangeProblem& problem, const std::vector<bool>& trusted,
                        const Placement& placement) {
   Counts counts(problem, trusted);
-  std::vector<Index> nodes;
-  for (Index v = 0; v < problem.nodes; ++v) {
-    if (placement.placed[v]) nodes.push_back(v);
-  }
-  if (!(counts.end() > 0.0) || nodes.empty()) return {};
-  const Eigen::MatrixXd points = placement.positions(Eigen::all, nodes);
-  const auto wanted = [&](std::int32_t a, std::int32_t b) {
-    return counts.matters(nodes[a], nodes[b]);
-  };
-  for (const auto& [a, b] : near_pairs(points, counts.end(), wanted)) {
-    counts.add(nodes[a], nodes[b], (points.col(a) - points.col(b)).norm());
+  if (!(counts.end() > 0.0) || placed_count(placement) == 0) return {};
+  const auto wanted = [&](Index a, Index b) { return counts.matters(a, b); };
+  for (const auto& [a, b] : near_nodes(placement, counts.end(), wanted)) {
+    counts.add(a, b, distance_of(placement, a, b));
   }
   return counts.curve();
 }

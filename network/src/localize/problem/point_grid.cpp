@@ -25,4 +25,20 @@ std::vector<std::pair<std::int32_t, std::int32_t>> near_pairs(
   return pairs;
 }
 
+std::vector<std::pair<Index, Index>> near_nodes(const Placement& placement, double radius,
+                                                const std::function<bool(Index, Index)>& wanted) {
+  std::vector<Index> nodes;
+  for (std::size_t v = 0; v < placement.placed.size(); ++v) {
+    if (placement.placed[v]) nodes.push_back(static_cast<Index>(v));
+  }
+  auto pairs = near_pairs(
+      placement.positions(Eigen::all, nodes), radius,
+      [&](std::int32_t a, std::int32_t b) { return !wanted || wanted(nodes[a], nodes[b]); });
+  for (auto& [a, b] : pairs) {
+    a = nodes[a];
+    b = nodes[b];
+  }
+  return pairs;
+}
+
 }  // namespace isotherm::network::detail

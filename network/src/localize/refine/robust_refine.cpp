@@ -30,49 +30,16 @@ double median_deviation(const RangeProblem& problem, const Placement& placement)
   return deviations.empty() ? 0.0 : lower_median(std::move(deviations));
 }
 
-RefineOutcome refine_among(const RangeProblem& problem, const std::vector<bool>& use, double width,
-                           int max_iterations, const LocalizeOptions& options,
-                           Placement& placement) {
-  constexpr double kStill = 1e-4;  // the next width, or the leave-one-out tests, go on from here
-  return refine(problem, use, placement,
-                {.width = width,
-                 .max_iterations = max_iterations,
-                 .still = kStill,
-                 .progress = options.progress});
+void refine_among(const RangeProblem& problem, const std::vector<bool>& use, double width,
+                  const LocalizeOptions& options, Placement& placement) {
+  constexpr int kIterations = 12;
+  constexpr double kStill = 1e-4;  // the next width, or the polish, goes on from here
+  refine(problem, use, placement,
+         {.width = width,
+          .max_iterations = kIterations,
+          .still = kStill,
+          .progress = options.progress});
 }
-
-class Stages {
- public:
-  Stages(const RangeProblem& problem, const std::vector<bool>& trusted, Placement& placement,
-         const LocalizeOptions& options)
-      : problem_(problem), trusted_(trusted), placement_(placement), options_(options) {}
-
-  // Far from the minimum: by trusted pairs.
-  void approach(double width) {
-    const auto use = ranges_in_reach(problem_, trusted_, placement_, width);
-    note(refine_among(problem_, use, width, kIterations, options_, placement_));
-  }
-
-  void fit(double width) {
-    note(refine_at_width(problem_, width, kIterations, options_, placement_));
-  }
-
-  const RefineOutcome& total() const { return total_; }
-
- private:
-  static constexpr int kIterations = 12;
-
-  void note(const RefineOutcome& outcome) {
-    total_.iterations += outcome.iterations;
-    total_.converged = outcome.converged;
-  }
-
-  const RangeProblem& problem_;
-  const std::vector<bool>& trusted_;
-  Placement& placement_;
-  const LocalizeOptions& options_;
-  RefineOutcome total_;
-};
 
 }  // namespace
 
@@ -93,32 +60,32 @@ std::vector<bool> ranges_in_reach(const RangeProblem& problem, const std::vector
   return use;
 }
 
-RefineOutcome refine_at_width(const RangeProblem& problem, double width, int max_iterations,
-                              const LocalizeOptions& options, Placement& placement) {
+void refine_at_width(const RangeProblem& problem, double width, const LocalizeOptions& options,
+                     Placement& placement) {
   const auto use = ranges_within(problem, placement, std::pow(kFarOutside * width, 2));
-  return refine_among(problem, use, width, max_iterations, options, placement);
+  refine_among(problem, use, width, options, placement);
 }
 
-RefineOutcome refine_robustly(const RangeProblem& problem, const std::vector<bool>& trusted,
-                              double gate, const LocalizeOptions& options, Placement& placement) {
+void refine_robustly(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
+                     const LocalizeOptions& options, Placement& placement) {
   constexpr int kMostRounds = 5;
   constexpr double kMedianOfNormal = 0.6745;
   const double narrow = std::sqrt(gate);
-  Stages stages(problem, trusted, placement, options);
   const auto spread = [&] { return 2.0 * median_deviation(problem, placement) / kMedianOfNormal; };
+  // Far from the minimum: by trusted pairs.
   for (double width = spread(); width > narrow; width = std::min(0.5 * width, spread())) {
-    stages.approach(width);
+    const auto use = ranges_in_reach(problem, trusted, placement, width);
+    refine_among(problem, use, width, options, placement);
   }
-  stages.fit(narrow);
+  refine_at_width(problem, narrow, options, placement);
   std::vector<bool> among(problem.nodes, true);
   for (int round = 0; round < kMostRounds; ++round) {
     const auto evidence = learn_evidence(problem, trusted, placement);
     const auto moved = relocate(problem, gate, evidence, options, among, placement);
     if (moved.empty()) break;
-    stages.fit(narrow);
+    refine_at_width(problem, narrow, options, placement);
     among = within_steps(problem, moved, 1);  // whose surroundings have changed
   }
-  return stages.total();
 }
 
 }  // namespace isotherm::network::detail

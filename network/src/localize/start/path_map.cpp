@@ -159,14 +159,9 @@ class Unfolding {
 
   void add_repulsion(std::vector<Spring>& springs) const {
     if (!(reach_ > 0.0)) return;
-    std::vector<Index> nodes;
-    for (Index v = 0; v < problem_.nodes; ++v) {
-      if (placement_.placed[v]) nodes.push_back(v);
-    }
-    const Eigen::MatrixXd points = placement_.positions(Eigen::all, nodes);
-    for (const auto& [a, b] : near_pairs(points, reach_)) {
-      if (has_range(problem_, nodes[a], nodes[b])) continue;
-      springs.push_back({nodes[a], nodes[b], reach_, kRepulsion * reach_, 0.0, kRepulsionWidth});
+    for (const auto& [a, b] : near_nodes(placement_, reach_)) {
+      if (!has_range(problem_, a, b))
+        springs.push_back({a, b, reach_, kRepulsion * reach_, 0.0, kRepulsionWidth});
     }
   }
 
