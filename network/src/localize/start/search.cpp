@@ -58,7 +58,14 @@ class Search {
     if (has_false_) consider(started(supported, supported, Errors::too_long));
     consider(started(trusted_, trusted_, Errors::too_long));
     unfold_best();
+    for (int round = 0; round < kMostRounds && try_without_contradicted(); ++round) unfold_best();
     for (int round = 0; round < kMostRounds && consider(heated(best_)); ++round) unfold_best();
+  }
+
+  bool try_without_contradicted() {
+    const auto pairs = uncontradicted();
+    const auto paths = has_false_ ? supported_pairs(problem_, pairs) : pairs;
+    return consider(started(paths, pairs, best_errors_));
   }
 
   Placement in_frame(Placement map) const {
@@ -89,6 +96,15 @@ class Search {
       refine_robustly(rough, trusted_, gate_, options_, map);
     }
     return map;
+  }
+
+  std::vector<bool> uncontradicted() const {
+    auto pairs = trusted_;
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      const auto& pair = problem_.pairs[p];
+      if (is_placed(best_, pair) && squared_deviation(best_, pair) > 4.0 * gate_) pairs[p] = false;
+    }
+    return pairs;
   }
 
   // Whether a map that is settled makes the best one better.
