@@ -61,10 +61,8 @@ inline constexpr double kBetter = 2.0;
 inline constexpr double kApart = 4.0;
 
 /// Width, in typical ranges, of the springs' loss at first: a map by shortest paths errs by no more
-/// between neighbours,
+/// between neighbours.
 inline constexpr double kRoughMap = 1.5;
-/// and at last, at least: what is narrower is for the refinement.
-inline constexpr double kUnfoldedMap = 0.02;
 
 /// Deviation, in reaches, of what keeps nodes without a range apart,
 inline constexpr double kRepulsion = 0.05;
@@ -76,9 +74,6 @@ inline constexpr double kFarOutside = 4.0;
 
 /// Part of the trusted pairs that may contradict a map before other starts are tried.
 inline constexpr double kHardlyAny = 0.005;
-
-/// Deviation, in typical ranges, of the loosest ranges that the best map is refined from.
-inline constexpr double kLoosest = 0.1;
 
 /// Ranges from the middle of a region that is drawn anew to its outermost nodes, and from what has
 /// moved to the lines that parts may now be folded in: about the extent of the largest parts.

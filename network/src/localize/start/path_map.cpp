@@ -125,8 +125,9 @@ class Unfolding {
 
   // From a loss that is wide beside the errors of the map down to that of a range.
   void run(double gate) {
+    constexpr double kNarrowest = 0.02;  // typical ranges; the rest is for the refinement
     const double narrow =
-        std::max(std::sqrt(gate), kUnfoldedMap * problem_.typical_distance / sigma_);
+        std::max(std::sqrt(gate), kNarrowest * problem_.typical_distance / sigma_);
     wide_ = std::max(narrow, kRoughMap * problem_.typical_distance / sigma_);
     for (double width = wide_; width > narrow; width *= 0.5) fit(width);
     fit(narrow);

@@ -44,7 +44,6 @@ class Search {
     unfold_best();
     if (!is_enough()) try_other_starts(supported);
     for (int round = 0; round < kMostRounds && consider_redrawn(); ++round) unfold_best();
-    for (int round = 0; round < kMostRounds && consider(loosened(best_)); ++round) unfold_best();
     return std::move(best_);
   }
 
@@ -81,20 +80,6 @@ class Search {
 
   Placement heated(Placement map) const {
     unfold(problem_, trusted_, best_errors_, gate_, options_, map);
-    return map;
-  }
-
-  // From ranges whose deviation is a tenth of the typical one, halved again and again, down to what
-  // is stated.
-  Placement loosened(Placement map) const {
-    for (double factor = kLoosest * problem_.typical_distance / problem_.typical_sigma;
-         factor > 1.0; factor *= 0.5) {
-      auto rough = problem_;
-      rough.typical_sigma *= factor;
-      for (auto& sigma : rough.sigmas) sigma *= factor;
-      for (auto& pair : rough.pairs) pair.sigma *= factor;
-      refine_robustly(rough, trusted_, gate_, options_, map);
-    }
     return map;
   }
 
