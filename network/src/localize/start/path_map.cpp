@@ -6,9 +6,10 @@
 #include <queue>
 #include <utility>
 
+#include <Eigen/Eigenvalues>
+
 #include "localize/constants.hpp"
 #include "localize/problem/absence.hpp"
-#include "localize/problem/classical_scaling.hpp"
 #include "localize/problem/point_grid.hpp"
 #include "localize/refine/refine.hpp"
 
@@ -82,11 +83,22 @@ Pilots choose_pilots(const RangeProblem& problem, const std::vector<bool>& trust
   return pilots;
 }
 
+// Eigenpairs of the inner products of points about their centre, from their squared distances: the
+// points' coordinates are the last eigenvectors times the roots of their values (W. Torgerson,
+// "Multidimensional scaling", 1952).
+Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> classical_scaling(const Eigen::MatrixXd& squared,
+                                                                 const Eigen::RowVectorXd& means) {
+  Eigen::MatrixXd inner = squared.rowwise() - means;
+  inner.colwise() -= means.transpose();
+  inner.array() += means.mean();
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(-0.5 * inner);
+}
+
 // Classical scaling of the pilots; the others by their distances from these.
 Eigen::MatrixXd scale(const Pilots& pilots, int d) {
   const Eigen::MatrixXd among = pilots.squared(pilots.which, Eigen::all);
   const Eigen::RowVectorXd means = among.colwise().mean();
-  const auto eigen = classical_scaling(among);
+  const auto eigen = classical_scaling(among, means);
   const auto n = among.rows();
   Eigen::MatrixXd positions = Eigen::MatrixXd::Zero(d, pilots.squared.rows());
   for (Eigen::Index i = 0; i < std::min<Eigen::Index>(d, n); ++i) {
