@@ -175,16 +175,13 @@ Placement anchors_only(const RangeNetwork& network, const RangeProblem& problem)
   return placement;
 }
 
-Eigen::VectorXd extents(const Eigen::MatrixXd& points) {
-  const Eigen::MatrixXd centred = points.colwise() - points.rowwise().mean();
-  return centred.jacobiSvd().singularValues();
-}
-
 bool span_space(const RangeProblem& problem, const Placement& placement,
                 const std::vector<Index>& nodes) {
   constexpr double kFlat = 1e-9;  // of the nodes' extent: a line up to rounding
   if (static_cast<int>(nodes.size()) <= problem.dimension) return false;
-  const Eigen::VectorXd values = extents(placement.positions(Eigen::all, nodes));
+  const Eigen::MatrixXd points = placement.positions(Eigen::all, nodes);
+  const Eigen::MatrixXd centred = points.colwise() - points.rowwise().mean();
+  const Eigen::VectorXd values = centred.jacobiSvd().singularValues();
   const double noise = problem.sigmas.empty() ? 0.0 : kHardlyNoise * problem.typical_sigma;
   return values.minCoeff() > std::max(noise, kFlat * values.maxCoeff());
 }

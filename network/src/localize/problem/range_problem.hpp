@@ -60,8 +60,10 @@ double extent(const Placement& placement);
 inline bool are_placed(const Placement& placement, Index a, Index b) {
   return placement.placed[a] && placement.placed[b];
 }
-inline bool is_placed(const Placement& placement, const RangePair& pair) {
-  return are_placed(placement, pair.from, pair.to);
+/// The same of the ends of a range or a pair.
+template <class Range>
+bool is_placed(const Placement& placement, const Range& range) {
+  return are_placed(placement, range.from, range.to);
 }
 
 /// Between two points of so many coordinates; the innermost of all loops.
@@ -102,9 +104,6 @@ RangeProblem make_problem(const RangeNetwork& network);
 
 /// The anchors where they are, nothing else.
 Placement anchors_only(const RangeNetwork& network, const RangeProblem& problem);
-
-/// Singular values of the columns about their mean, falling.
-Eigen::VectorXd extents(const Eigen::MatrixXd& points);
 
 /// Whether nodes stand clear of every line (plane, in space), so that nothing on them can
 /// be mirrored: by more than the noise of the ranges.

@@ -16,14 +16,10 @@ double deviation_of(const RangeProblem& problem, const Placement& placement, std
          problem.sigmas[k];
 }
 
-bool both_placed(const RangeProblem& problem, const Placement& placement, std::size_t k) {
-  return placement.placed[problem.ranges[k].from] && placement.placed[problem.ranges[k].to];
-}
-
 double median_deviation(const RangeProblem& problem, const Placement& placement) {
   std::vector<double> deviations;
   for (std::size_t k = 0; k < problem.ranges.size(); ++k) {
-    if (both_placed(problem, placement, k)) {
+    if (is_placed(placement, problem.ranges[k])) {
       deviations.push_back(deviation_of(problem, placement, k));
     }
   }
@@ -47,7 +43,7 @@ std::vector<bool> ranges_within(const RangeProblem& problem, const Placement& pl
                                 double gate) {
   std::vector<bool> within(problem.ranges.size(), false);
   for (std::size_t k = 0; k < within.size(); ++k) {
-    within[k] = both_placed(problem, placement, k) &&
+    within[k] = is_placed(placement, problem.ranges[k]) &&
                 std::pow(deviation_of(problem, placement, k), 2) <= gate;
   }
   return within;
