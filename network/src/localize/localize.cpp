@@ -8,6 +8,7 @@
 
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/statistics.hpp"
+#include "localize/constants.hpp"
 #include "localize/firm/firmness.hpp"
 #include "localize/problem/range_problem.hpp"
 #include "localize/problem/repeats.hpp"
@@ -25,8 +26,6 @@ using detail::RangeCheck;
 using detail::RangeProblem;
 using spectral::EdgeVerdict;
 using spectral::Verdict;
-
-constexpr double kLikelier = 0.5;  // than not
 
 class Localization {
  public:
@@ -94,14 +93,13 @@ class Localization {
 
   // Likelier than not, given all others.
   bool is_correct(std::size_t k) const {
-    return judged_[k].checked ? judged_[k].loss.probability[kCorrect] >= kLikelier
+    return judged_[k].checked ? judged_[k].loss.probability[kCorrect] >= detail::kLikely
                               : weighed_.weighs[k];
   }
 
   // Scales the standard deviations to those that the errors most likely have. True if that changed
   // much.
   bool update_noise() {
-    constexpr double kMuch = 0.05;  // of its log
     bool changed = false;
     for (const bool given : {true, false}) {
       if (given && !options_.estimate_noise) continue;
@@ -115,7 +113,7 @@ class Localization {
         if (!scaled[pair]) problem_.pairs[pair].sigma *= factor;
         scaled[pair] = true;
       }
-      changed = changed || std::abs(std::log(factor)) > kMuch;
+      changed = changed || std::abs(std::log(factor)) > detail::kSameNoise;
     }
     problem_.typical_sigma = detail::lower_median(problem_.sigmas);
     return changed;
@@ -133,7 +131,7 @@ class Localization {
     }
     const auto& count = statistics.count;
     // A given one is corrected only on better evidence than one that has to be found.
-    const double enough = given ? 10.0 : 1.0;
+    const double enough = given ? detail::kEnoughRanges : 1.0;
     if (count[kCorrect] + count[kTooLong] - fitted < enough) return 1.0;
     return std::max(most_likely_scale(statistics, fitted, 1.0), finest_noise(given) / largest);
   }
@@ -221,7 +219,7 @@ class Localization {
     verdict.probability = correct;
     verdict.score = std::log((1.0 - correct) / correct);
     verdict.threshold = 0.0;
-    verdict.verdict = correct < kLikelier ? Verdict::prune : if_correct;
+    verdict.verdict = correct < detail::kLikely ? Verdict::prune : if_correct;
     verdict.stage = name_of(range.loss);
   }
 

@@ -2,26 +2,18 @@
 
 #include <vector>
 
+#include "localize/constants.hpp"
+
 namespace isotherm::network::detail {
 
 Crowd::Crowd(const RangeProblem& problem, const Placement& placement, const Absence& absence)
     : problem_(problem), absence_(absence), grid_(absence.reach()) {
-  rebuild(placement);
-}
-
-void Crowd::rebuild(const Placement& placement) {
-  grid_ = PointGrid(absence_.reach());
-  for (Index v = 0; v < problem_.nodes; ++v) {
-    if (placement.placed[v]) insert(v, placement.positions.col(v));
+  for (Index v = 0; v < problem.nodes && absence.reach() > 0.0; ++v) {
+    if (placement.placed[v]) grid_.insert(v, placement.positions.col(v));
   }
 }
 
-void Crowd::insert(Index node, const Point& position) {
-  if (absence_.reach() > 0.0) grid_.insert(node, position);
-}
-
 void Crowd::add_strangers(Star& star, Index node, const std::vector<bool>& among) const {
-  constexpr double kAround = 2.5;  // reaches
   if (!(absence_.reach() > 0.0) || star.arms.empty()) return;
   // Where most neighbours are. Places far from there have too few strangers, which makes them
   // look better than they are, not worse.
@@ -31,9 +23,9 @@ void Crowd::add_strangers(Star& star, Index node, const std::vector<bool>& among
     for (const auto& arm : star.arms) values.push_back(arm.end[i]);
     middle[i] = lower_median(std::move(values));
   }
-  const double radius = kAround * absence_.reach();
+  const double radius = kStrangersAround * absence_.reach();
   grid_.visit_near(middle, radius, [&](Index other, const Point& position) {
-    if (other == node || !among[other] || (position - middle).norm() > radius) return;
+    if (other == node || !among[other] || distance_between(position, middle) > radius) return;
     if (!has_range(problem_, node, other)) star.strangers.push_back(position);
   });
   star.absence = &absence_;
@@ -43,7 +35,7 @@ double Crowd::absence_cost(Index node, const Point& place, const std::vector<boo
   double cost = 0.0;
   if (!(absence_.reach() > 0.0)) return cost;
   grid_.visit_near(place, absence_.reach(), [&](Index other, const Point& position) {
-    const double distance = (place - position).norm();
+    const double distance = distance_between(place, position);
     if (distance >= absence_.reach() || other == node || !among[other]) return;
     if (!has_range(problem_, node, other)) cost += absence_.cost(distance);
   });

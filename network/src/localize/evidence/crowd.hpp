@@ -15,11 +15,6 @@ class Crowd {
   /// All placed nodes. The arguments must outlive it.
   Crowd(const RangeProblem& problem, const Placement& placement, const Absence& absence);
 
-  /// With these nodes instead.
-  void rebuild(const Placement& placement);
-
-  void insert(Index node, const Point& position);
-
   /// Gives the star of a node its strangers: those of the crowd in `among` that have no range
   /// to the node, as far as its neighbours let it come near them.
   void add_strangers(Star& star, Index node, const std::vector<bool>& among) const;

@@ -84,7 +84,11 @@ Evidence learn_evidence(const RangeProblem& problem, const std::vector<bool>& tr
 
 double worth(const RangeProblem& problem, const std::vector<bool>& trusted,
              const Placement& placement) {
-  const auto evidence = learn_evidence(problem, trusted, placement);
+  return worth(problem, trusted, learn_evidence(problem, trusted, placement), placement);
+}
+
+double worth(const RangeProblem& problem, const std::vector<bool>& trusted,
+             const Evidence& evidence, const Placement& placement) {
   const double correct = evidence.model.share[kCorrect] * longest_range(problem);
   double sum = -absence_cost(problem, evidence.absence, placement);
   for (std::size_t p = 0; p < problem.pairs.size(); ++p) {

@@ -49,4 +49,8 @@ Evidence learn_evidence(const RangeProblem& problem, const std::vector<bool>& tr
 double worth(const RangeProblem& problem, const std::vector<bool>& trusted,
              const Placement& placement);
 
+/// The same with the evidence learned from it already.
+double worth(const RangeProblem& problem, const std::vector<bool>& trusted,
+             const Evidence& evidence, const Placement& placement);
+
 }  // namespace isotherm::network::detail

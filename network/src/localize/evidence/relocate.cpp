@@ -3,13 +3,12 @@
 #include <optional>
 
 #include "isotherm/base/parallel.hpp"
+#include "localize/constants.hpp"
 #include "localize/evidence/crowd.hpp"
 #include "localize/evidence/star.hpp"
 
 namespace isotherm::network::detail {
 namespace {
-
-constexpr double kGain = 2.0;  // of the cost, for which a move is worth it
 
 class Relocation {
  public:
@@ -29,7 +28,7 @@ class Relocation {
     if (!placement_.placed[node]) return true;
     const Point place = placement_.positions.col(node);
     return ranges.agreeing(place, gate_) < static_cast<int>(ranges.arms.size()) ||
-           crowd_.absence_cost(node, place, placement_.placed) > kGain;
+           crowd_.absence_cost(node, place, placement_.placed) > kBetter;
   }
 
   std::optional<Multilateration> look(Index node) const {
@@ -41,9 +40,9 @@ class Relocation {
     const auto around = surroundings(node);
     const double cost = around.cost(found.position);
     if (placement_.placed[node]) {
-      if (around.cost(placement_.positions.col(node)) - cost < kGain) return false;
+      if (around.cost(placement_.positions.col(node)) - cost < kBetter) return false;
     } else {
-      if (found.rival_cost - cost < kGain) return false;
+      if (found.rival_cost - cost < kBetter) return false;
       if (around.agreeing(found.position, gate_) <= problem_.dimension) return false;
     }
     placement_.positions.col(node) = found.position;

@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include "localize/constants.hpp"
 #include "localize/problem/geman_mcclure.hpp"
 
 namespace isotherm::network::detail {
@@ -133,7 +134,7 @@ std::vector<Candidate> candidates(const Star& star, double apart) {
   std::vector<Candidate> fresh;
   for (const auto& candidate : all) {
     const bool is_fresh = std::none_of(fresh.begin(), fresh.end(), [&](const Candidate& other) {
-      return (other.position - candidate.position).norm() < apart;
+      return distance_between(other.position, candidate.position) < apart;
     });
     if (is_fresh) fresh.push_back(candidate);
     if (fresh.size() == kRefined) break;
@@ -147,7 +148,7 @@ double Star::cost(const Point& place) const {
   double sum = 0.0;
   for (const auto& arm : arms) sum += arm.cost(arm.residual(place));
   if (absence == nullptr) return sum;
-  for (const auto& stranger : strangers) sum += absence->cost((stranger - place).norm());
+  for (const auto& stranger : strangers) sum += absence->cost(distance_between(stranger, place));
   return sum;
 }
 
@@ -170,7 +171,6 @@ Star star(const RangeProblem& problem, const Evidence& evidence, const Placement
 }
 
 std::optional<Multilateration> multilaterate(const Star& star) {
-  constexpr double kApart = 4.0;  // standard deviations: nearer places are one
   if (star.arms.empty()) return std::nullopt;
   std::vector<double> sigmas;
   for (const auto& arm : star.arms) sigmas.push_back(arm.sigma);

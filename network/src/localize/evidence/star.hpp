@@ -16,7 +16,7 @@ struct Arm {
   RangeCost cost;
 
   /// (distance between the ends - range) / sigma.
-  double residual(const Point& place) const { return ((end - place).norm() - distance) / sigma; }
+  double residual(const Point& place) const { return (distance_between(end, place) - distance) / sigma; }
 };
 
 /// What speaks for and against places of one node.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "isotherm/base/parallel.hpp"
+#include "localize/constants.hpp"
 #include "localize/evidence/crowd.hpp"
 #include "localize/evidence/star.hpp"
 #include "localize/fold/fold_axes.hpp"
@@ -17,8 +18,6 @@ namespace {
 using Nodes = std::vector<Index>;
 
 constexpr double kAnyCost = std::numeric_limits<double>::infinity();
-// Of what makes a place clearly the best, what one range may bring to the set: none decides alone.
-constexpr double kOneRange = 0.7;
 
 class Firmness {
  public:
@@ -42,7 +41,7 @@ class Firmness {
     do {
       release_nodes(std::move(changed));
       changed = release_folding_parts(lines);
-      lines = lines_near(problem_, std::exchange(released_, {}));
+      lines = within_steps(problem_, std::exchange(released_, {}), kRegionSteps, trusted_);
     } while (std::find(changed.begin(), changed.end(), true) != changed.end());
     return with_those_beside();
   }
@@ -110,8 +109,6 @@ class Firmness {
   // Whether the node's place among the firm ones is clearly the best, if a range brings at most so
   // much.
   bool has_one_place(Index node, double most) const {
-    constexpr double kNearly =
-        0.5;  // of what makes a place clearly the best: what another one may be better by
     auto around = star(problem_, evidence_, firm_, node, trusted_);
     if (static_cast<int>(around.arms.size()) <= problem_.dimension) return false;
     const Point place = firm_.positions.col(node);
@@ -121,7 +118,7 @@ class Firmness {
     crowd_.add_strangers(around, node, firm_.placed);
     const auto found = multilaterate(around);
     if (!found || found->margin() < clear_) return false;
-    return around.cost(place) - found->cost < kNearly * clear_;
+    return around.cost(place) - found->cost < kBetterElsewhere * clear_;
   }
 
   const RangeProblem& problem_;

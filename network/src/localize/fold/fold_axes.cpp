@@ -9,16 +9,12 @@
 #include <utility>
 
 #include "isotherm/base/parallel.hpp"
+#include "localize/constants.hpp"
 
 namespace isotherm::network::detail {
 namespace {
 
 constexpr std::size_t kLeast = 3;
-constexpr Index kMost = 200;
-// Most that a fold may cost before anything gives way, in ranges that do not fit.
-constexpr double kMostBroken = 10.0;
-// What breaks a pair, of the limit of a range that does not fit.
-constexpr double kBroken = 0.5;
 
 // A trusted pair of placed nodes, as one of them sees it.
 struct PairTie {
@@ -90,7 +86,8 @@ class AxisSearch {
         ties_(ties),
         most_cost_(most_cost),
         // Without anchors a part is what turns beside the rest, which is larger.
-        most_(problem.anchored() ? kMost : std::min(kMost, placed_count(placement) / 2)),
+        most_(problem.anchored() ? kLargestPart
+                                 : std::min(kLargestPart, placed_count(placement) / 2)),
         known_(problem.nodes, 0),
         part_of_(problem.nodes, 0),
         strings_(problem.nodes, {0, 0}) {}
@@ -207,8 +204,7 @@ class AxisSearch {
 
 // Whether most nodes of either part are in both.
 bool are_alike(const std::vector<Index>& a, const std::vector<Index>& b) {
-  constexpr double kMostly = 0.8;
-  const double least = kMostly * static_cast<double>(std::max(a.size(), b.size()));
+  const double least = kAlike * static_cast<double>(std::max(a.size(), b.size()));
   if (static_cast<double>(std::min(a.size(), b.size())) < least) return false;
   std::vector<Index> both;
   std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
@@ -270,11 +266,6 @@ std::vector<Fold> find_folds(const RangeProblem& problem, const std::vector<bool
   std::stable_sort(folds.begin(), folds.end(),
                    [](const Fold& a, const Fold& b) { return a.cost < b.cost; });
   return cheapest_of_alike(std::move(folds));
-}
-
-std::vector<bool> lines_near(const RangeProblem& problem, const std::vector<Index>& nodes) {
-  constexpr int kSteps = 4;  // about the extent of the largest parts
-  return within_steps(problem, nodes, kSteps);
 }
 
 }  // namespace isotherm::network::detail

@@ -34,7 +34,4 @@ std::vector<Fold> find_folds(const RangeProblem& problem, const std::vector<bool
                              const Evidence& evidence, const LocalizeOptions& options,
                              const Placement& placement, const std::vector<bool>& among);
 
-/// The nodes near these, where lines are to be searched again when these have moved.
-std::vector<bool> lines_near(const RangeProblem& problem, const std::vector<Index>& nodes);
-
 }  // namespace isotherm::network::detail

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "localize/constants.hpp"
 #include "localize/fold/fold_axes.hpp"
 #include "localize/fold/part_move.hpp"
 #include "localize/refine/robust_refine.hpp"
@@ -11,7 +12,6 @@ namespace isotherm::network::detail {
 bool open_folds(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
                 const LocalizeOptions& options, Placement& placement) {
   constexpr int kMostRounds = 6;
-  constexpr int kIterations = 12;
   bool any = false;
   std::vector<bool> among(problem.nodes, true);
   for (int round = 0; round < kMostRounds; ++round) {
@@ -24,8 +24,8 @@ bool open_folds(const RangeProblem& problem, const std::vector<bool>& trusted, d
         problem, gains(problem, trusted, gate, evidence, options, placement, moves), placement);
     if (moved.empty()) break;
     any = true;
-    among = lines_near(problem, moved);
-    refine_at_width(problem, std::sqrt(gate), kIterations, options, placement);
+    among = within_steps(problem, moved, kRegionSteps);
+    refine_at_width(problem, std::sqrt(gate), options, placement);
   }
   if (any) refine_robustly(problem, trusted, gate, options, placement);
   return any;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "isotherm/base/parallel.hpp"
+#include "localize/constants.hpp"
 #include "localize/problem/point_grid.hpp"
 #include "localize/refine/refine.hpp"
 
@@ -39,7 +40,7 @@ class Trial {
     relax();
     MoveOutcome outcome;
     outcome.extra = cost() - before;
-    const double apart = 4.0 * frame_.typical_sigma;
+    const double apart = kApart * frame_.typical_sigma;
     std::vector<Eigen::Index> which;
     for (std::size_t k = 0; k < nodes_.size(); ++k) {
       const auto column = static_cast<Eigen::Index>(k);
@@ -164,7 +165,7 @@ class Trial {
       sum += crowd_.absence_cost(v, place, others_);
       before.visit_near(place, reach, [&](Index other, const Point& position) {
         if (has_range(problem_, v, other)) return;
-        sum += evidence_.absence.cost((position - place).norm());
+        sum += evidence_.absence.cost(distance_between(position, place));
       });
       before.insert(v, place);
     }
@@ -198,7 +199,6 @@ std::vector<MoveOutcome> gains(const RangeProblem& problem, const std::vector<bo
                                double gate, const Evidence& evidence,
                                const LocalizeOptions& options, const Placement& placement,
                                const std::vector<PartMove>& moves) {
-  constexpr double kGain = 2.0;  // of the cost, for which a move is worth it
   const Crowd crowd(problem, placement, evidence.absence);
   std::vector<MoveOutcome> outcomes(moves.size());
   parallel_for(static_cast<std::int64_t>(moves.size()), options.threads, options.progress, "parts",
@@ -207,7 +207,7 @@ std::vector<MoveOutcome> gains(const RangeProblem& problem, const std::vector<bo
                      try_move(problem, trusted, gate, evidence, crowd, placement, moves[k]);
                });
   std::erase_if(outcomes, [](const MoveOutcome& outcome) {
-    return outcome.extra >= -kGain || outcome.moved.empty();
+    return outcome.extra >= -kBetter || outcome.moved.empty();
   });
   std::stable_sort(outcomes.begin(), outcomes.end(),
                    [](const MoveOutcome& a, const MoveOutcome& b) { return a.extra < b.extra; });

@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "localize/constants.hpp"
 #include "localize/refine/polish.hpp"
 
 namespace isotherm::network::detail {
@@ -35,10 +36,9 @@ std::vector<std::vector<Index>> connected_parts(const RangeProblem& problem,
 
 std::vector<PartMove> differing_parts(const RangeProblem& problem, const std::vector<bool>& trusted,
                                       const Placement& placement, const Placement& other) {
-  constexpr double kNoise = 4.0;  // standard deviations of a range
   const Eigen::RowVectorXd apart = (placement.positions - other.positions).colwise().norm();
   std::set<std::vector<Index>> parts;
-  for (double least = kNoise * problem.typical_sigma; least < problem.typical_distance;
+  for (double least = kApart * problem.typical_sigma; least < problem.typical_distance;
        least *= 2.0) {
     std::vector<bool> differ(problem.nodes, false);
     for (Index v = 0; v < problem.nodes; ++v) {

@@ -3,20 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "localize/constants.hpp"
 #include "localize/problem/point_grid.hpp"
 
 namespace isotherm::network::detail {
 namespace {
-
-constexpr std::size_t kBins = 16;
-// The curve ends at this many times the length that most ranges keep within.
-constexpr double kEnd = 1.5;
-constexpr double kMost = 0.9;
-// Pairs without a range that are taken for granted at any distance: without pairs to learn
-// from absence means nothing.
-constexpr double kGranted = 3.0;
-// Even where all are in range this part of the pairs may have none, for reasons of their own.
-constexpr double kLeastChance = 0.02;
 
 double longest_of_most(const RangeProblem& problem, const std::vector<bool>& trusted) {
   std::vector<double> distances;
@@ -25,7 +16,7 @@ double longest_of_most(const RangeProblem& problem, const std::vector<bool>& tru
   }
   if (distances.empty()) return 0.0;
   const auto last = static_cast<double>(distances.size() - 1);
-  const auto nth = distances.begin() + static_cast<std::ptrdiff_t>(kMost * last);
+  const auto nth = distances.begin() + static_cast<std::ptrdiff_t>(kMostRanges * last);
   std::nth_element(distances.begin(), nth, distances.end());
   return *nth;
 }
@@ -47,9 +38,9 @@ class Absence::Counts {
   Counts(const RangeProblem& problem, const std::vector<bool>& trusted)
       : problem_(problem),
         trusted_(trusted),
-        end_(kEnd * longest_of_most(problem, trusted)),
-        with_(kBins, 0.0),
-        without_(kBins, 0.0) {}
+        end_(kAbsenceEnd * longest_of_most(problem, trusted)),
+        with_(kAbsenceBins, 0.0),
+        without_(kAbsenceBins, 0.0) {}
 
   double end() const { return end_; }
 
@@ -57,7 +48,8 @@ class Absence::Counts {
 
   void add(Index a, Index b, double distance) {
     if (!(distance < end_) || !matters(a, b)) return;
-    const auto bin = std::min(kBins - 1, static_cast<std::size_t>(distance / end_ * kBins));
+    const auto bin =
+        std::min(kAbsenceBins - 1, static_cast<std::size_t>(distance / end_ * kAbsenceBins));
     switch (link_between(problem_, trusted_, a, b)) {
       case Link::none:
         without_[bin] += 1.0;
@@ -72,11 +64,11 @@ class Absence::Counts {
 
   Absence curve() const {
     Absence result;
-    result.bin_ = end_ / static_cast<double>(kBins);
-    for (std::size_t k = 0; k < kBins; ++k) {
+    result.bin_ = end_ / static_cast<double>(kAbsenceBins);
+    for (std::size_t k = 0; k < kAbsenceBins; ++k) {
       const double without = without_[k] + kGranted;
       const double chance = without / (without + with_[k]);
-      result.costs_.push_back(std::max(0.0, -2.0 * std::log(2.0 * std::max(kLeastChance, chance))));
+      result.costs_.push_back(std::max(0.0, -2.0 * std::log(2.0 * std::max(kLeastAbsent, chance))));
       if (result.costs_.back() > 0.0) result.reach_ = result.bin_ * static_cast<double>(k + 1);
     }
     return result;
@@ -93,17 +85,10 @@ class Absence::Counts {
 Absence Absence::learn(const RangeProblem& problem, const std::vector<bool>& trusted,
                        const Placement& placement) {
   Counts counts(problem, trusted);
-  std::vector<Index> nodes;
-  for (Index v = 0; v < problem.nodes; ++v) {
-    if (placement.placed[v]) nodes.push_back(v);
-  }
-  if (!(counts.end() > 0.0) || nodes.empty()) return {};
-  const Eigen::MatrixXd points = placement.positions(Eigen::all, nodes);
-  const auto wanted = [&](std::int32_t a, std::int32_t b) {
-    return counts.matters(nodes[a], nodes[b]);
-  };
-  for (const auto& [a, b] : near_pairs(points, counts.end(), wanted)) {
-    counts.add(nodes[a], nodes[b], (points.col(a) - points.col(b)).norm());
+  if (!(counts.end() > 0.0) || placed_count(placement) == 0) return {};
+  const auto wanted = [&](Index a, Index b) { return counts.matters(a, b); };
+  for (const auto& [a, b] : near_nodes(placement, counts.end(), wanted)) {
+    counts.add(a, b, distance_of(placement, a, b));
   }
   return counts.curve();
 }

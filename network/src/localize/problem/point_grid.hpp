@@ -74,4 +74,9 @@ std::vector<std::pair<std::int32_t, std::int32_t>> near_pairs(
     const Eigen::MatrixXd& points, double radius,
     const std::function<bool(std::int32_t, std::int32_t)>& wanted = {});
 
+/// The same of placed nodes.
+std::vector<std::pair<Index, Index>> near_nodes(
+    const Placement& placement, double radius,
+    const std::function<bool(Index, Index)>& wanted = {});
+
 }  // namespace isotherm::network::detail

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "localize/constants.hpp"
+
 namespace isotherm::network {
 namespace {
 
@@ -11,8 +13,6 @@ using std::numbers::pi;
 
 // A factor of ten: the deviation of everything that has a scale and nothing is known of.
 constexpr double kFactorOfTen = std::numbers::ln10;
-
-constexpr double kTold = 3.0;  // deviations: what noise hardly ever exceeds
 
 // A range whose prediction without it has more than so many times its own variance is checked by
 // nothing: rounding of the system's inverse.
@@ -97,7 +97,14 @@ void leave_out_too_long(RangeMixture& model) {
   model.share[kTooLong] = 0.0;
 }
 
-RangeLoss range_loss(const RangeMixture& model, double error, double variance) {
+namespace {
+
+// An excess that no range has is not looked at.
+Excess excess_if_any(const RangeMixture& model, double error, double sigma) {
+  return model.share[kTooLong] > 0.0 ? excess_of(error, sigma, model.excess) : Excess{};
+}
+
+RangeLoss loss_of(const RangeMixture& model, const Excess& excess, double error, double variance) {
   const double sigma = std::sqrt(variance);
   ByKind cost{};
   ByKind slope{};
@@ -107,7 +114,6 @@ RangeLoss range_loss(const RangeMixture& model, double error, double variance) {
   curvature[kCorrect] = 1.0 / variance;
   cost[kAnything] = std::log(model.longest);
   if (model.share[kTooLong] > 0.0) {
-    const auto excess = excess_of(error, sigma, model.excess);
     cost[kTooLong] = excess.cost;
     slope[kTooLong] = 1.0 / model.excess - excess.hazard / sigma;
     curvature[kTooLong] = excess.hazard * (excess.hazard + excess.cut) / variance;
@@ -132,6 +138,12 @@ RangeLoss range_loss(const RangeMixture& model, double error, double variance) {
   return result;
 }
 
+}  // namespace
+
+RangeLoss range_loss(const RangeMixture& model, double error, double variance) {
+  return loss_of(model, excess_if_any(model, error, std::sqrt(variance)), error, variance);
+}
+
 const char* name_of(const RangeLoss& loss) {
   const auto& p = loss.probability;
   if (p[kCorrect] >= p[kTooLong] && p[kCorrect] >= p[kAnything]) return "correct";
@@ -148,11 +160,11 @@ LeftOutRange left_out(const RangeLoss& loss, double error, double noise, double 
 
 RangeMoments range_moments(const RangeMixture& model, double error, double variance) {
   RangeMoments moments;
-  moments.probability = range_loss(model, error, variance).probability;
+  const double sigma = std::sqrt(variance);
+  const auto excess = excess_if_any(model, error, sigma);
+  moments.probability = loss_of(model, excess, error, variance).probability;
   moments.squared_noise = moments.probability[kCorrect] * error * error / variance;
   if (model.share[kTooLong] > 0.0) {
-    const double sigma = std::sqrt(variance);
-    const auto excess = excess_of(error, sigma, model.excess);
     const double noise = sigma / model.excess - excess.hazard;  // its mean, in deviations
     const double spread = std::max(0.0, 1.0 - excess.hazard * (excess.hazard + excess.cut));
     moments.squared_noise += moments.probability[kTooLong] * (noise * noise + spread);
@@ -180,7 +192,7 @@ void learn_kinds(const RangeStatistics& statistics, double typical_excess, doubl
     const double likeliest = std::exp(
         most_likely_log_mean(count[kTooLong], statistics.excess, std::log(typical_excess)));
     // An excess that noise hides is noise.
-    model.excess = std::max(likeliest, kTold * sigma);
+    model.excess = std::max(likeliest, detail::kHardlyNoise * sigma);
   }
 }
 

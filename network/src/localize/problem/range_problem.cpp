@@ -11,13 +11,10 @@
 #include <Eigen/SVD>
 
 #include "isotherm/base/error.hpp"
+#include "localize/constants.hpp"
 
 namespace isotherm::network::detail {
 namespace {
-
-// Standard deviation, as a part of the typical distance, of ranges that come
-// without one, until the residuals tell.
-constexpr double kProvisionalNoise = 0.05;
 
 void merge_pairs(RangeProblem& problem) {
   std::map<std::pair<Index, Index>, Index> number_of;
@@ -111,14 +108,6 @@ double extent(const Placement& placement) {
   return box.isEmpty() ? 0.0 : box.diagonal().norm();
 }
 
-bool are_placed(const Placement& placement, Index a, Index b) {
-  return placement.placed[a] && placement.placed[b];
-}
-
-double distance_of(const Placement& placement, Index a, Index b) {
-  return (placement.positions.col(a) - placement.positions.col(b)).norm();
-}
-
 double deviation(const Placement& placement, const RangePair& pair) {
   return (distance_of(placement, pair.from, pair.to) - pair.distance) / pair.sigma;
 }
@@ -128,17 +117,17 @@ double squared_deviation(const Placement& placement, const RangePair& pair) {
 }
 
 std::vector<bool> within_steps(const RangeProblem& problem, const std::vector<Index>& nodes,
-                               int steps) {
+                               int steps, const std::vector<bool>& usable) {
   std::vector<bool> result(problem.nodes, false);
   for (const Index v : nodes) result[v] = true;
   auto rim = nodes;
   for (int step = 0; step < steps; ++step) {
     std::vector<Index> next;
     for (const Index v : rim) {
-      for (const auto& neighbour : problem.pair_graph.neighbours(v)) {
-        if (result[neighbour.vertex]) continue;
-        result[neighbour.vertex] = true;
-        next.push_back(neighbour.vertex);
+      for (const auto& [vertex, edge] : problem.pair_graph.neighbours(v)) {
+        if (result[vertex] || (!usable.empty() && !usable[edge])) continue;
+        result[vertex] = true;
+        next.push_back(vertex);
       }
     }
     rim = std::move(next);
@@ -186,18 +175,14 @@ Placement anchors_only(const RangeNetwork& network, const RangeProblem& problem)
   return placement;
 }
 
-Eigen::VectorXd extents(const Eigen::MatrixXd& points) {
-  const Eigen::MatrixXd centred = points.colwise() - points.rowwise().mean();
-  return centred.jacobiSvd().singularValues();
-}
-
 bool span_space(const RangeProblem& problem, const Placement& placement,
                 const std::vector<Index>& nodes) {
-  constexpr double kClear = 3.0;  // standard deviations of a range
   constexpr double kFlat = 1e-9;  // of the nodes' extent: a line up to rounding
   if (static_cast<int>(nodes.size()) <= problem.dimension) return false;
-  const Eigen::VectorXd values = extents(placement.positions(Eigen::all, nodes));
-  const double noise = problem.sigmas.empty() ? 0.0 : kClear * problem.typical_sigma;
+  const Eigen::MatrixXd points = placement.positions(Eigen::all, nodes);
+  const Eigen::MatrixXd centred = points.colwise() - points.rowwise().mean();
+  const Eigen::VectorXd values = centred.jacobiSvd().singularValues();
+  const double noise = problem.sigmas.empty() ? 0.0 : kHardlyNoise * problem.typical_sigma;
   return values.minCoeff() > std::max(noise, kFlat * values.maxCoeff());
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include <Eigen/Core>
@@ -56,13 +57,30 @@ Index placed_count(const Placement& placement);
 double extent(const Placement& placement);
 
 /// Whether both have one.
-bool are_placed(const Placement& placement, Index a, Index b);
-inline bool is_placed(const Placement& placement, const RangePair& pair) {
-  return are_placed(placement, pair.from, pair.to);
+inline bool are_placed(const Placement& placement, Index a, Index b) {
+  return placement.placed[a] && placement.placed[b];
+}
+/// The same of the ends of a range or a pair.
+template <class Range>
+bool is_placed(const Placement& placement, const Range& range) {
+  return are_placed(placement, range.from, range.to);
+}
+
+/// Between two points of so many coordinates; the innermost of all loops.
+inline double distance_between(const double* a, const double* b, Eigen::Index dimension) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < dimension; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum);
+}
+inline double distance_between(const Point& a, const Point& b) {
+  return distance_between(a.data(), b.data(), a.size());
 }
 
 /// Between two placed nodes.
-double distance_of(const Placement& placement, Index a, Index b);
+inline double distance_of(const Placement& placement, Index a, Index b) {
+  const auto& at = placement.positions;
+  return distance_between(at.col(a).data(), at.col(b).data(), at.rows());
+}
 
 /// (distance between the places of a pair - its range) / sigma.
 double deviation(const Placement& placement, const RangePair& pair);
@@ -70,9 +88,10 @@ double deviation(const Placement& placement, const RangePair& pair);
 /// Its square.
 double squared_deviation(const Placement& placement, const RangePair& pair);
 
-/// Which nodes are at most so many ranges away from one of `nodes`.
+/// Which nodes are at most so many ranges away from one of `nodes`; only over the `usable` pairs,
+/// if these are given.
 std::vector<bool> within_steps(const RangeProblem& problem, const std::vector<Index>& nodes,
-                               int steps);
+                               int steps, const std::vector<bool>& usable = {});
 
 /// Whether there is a range between two nodes. O(degree).
 bool has_range(const RangeProblem& problem, Index a, Index b);
@@ -85,9 +104,6 @@ RangeProblem make_problem(const RangeNetwork& network);
 
 /// The anchors where they are, nothing else.
 Placement anchors_only(const RangeNetwork& network, const RangeProblem& problem);
-
-/// Singular values of the columns about their mean, falling.
-Eigen::VectorXd extents(const Eigen::MatrixXd& points);
 
 /// Whether nodes stand clear of every line (plane, in space), so that nothing on them can
 /// be mirrored: by more than the noise of the ranges.

@@ -89,7 +89,7 @@ void RangeInformation::add_ranges() {
   std::size_t pair = 0;
   for (std::size_t k = 0; k < problem_.ranges.size(); ++k) {
     const auto& range = problem_.ranges[k];
-    if (!use_[k] || !between_placed(k)) continue;
+    if (!use_[k] || !is_placed(placement_, problem_.ranges[k])) continue;
     const Point u = direction(range.from, range.to);
     const Block block = information(k) * u * u.transpose();
     for (const Index node : {range.from, range.to}) {
@@ -101,10 +101,6 @@ void RangeInformation::add_ranges() {
 
 bool RangeInformation::between_unknowns(std::size_t k) const {
   return variable_[problem_.ranges[k].from] >= 0 && variable_[problem_.ranges[k].to] >= 0;
-}
-
-bool RangeInformation::between_placed(std::size_t k) const {
-  return are_placed(placement_, problem_.ranges[k].from, problem_.ranges[k].to);
 }
 
 double RangeInformation::residual(std::size_t k) const {
@@ -245,7 +241,7 @@ std::vector<double> RangeInformation::predicted_variances() {
   std::vector<double> variances(problem_.ranges.size(), 0.0);
   std::vector<std::size_t> exact;
   for (std::size_t k = 0; k < problem_.ranges.size(); ++k) {
-    if (!between_placed(k)) continue;
+    if (!is_placed(placement_, problem_.ranges[k])) continue;
     const auto& range = problem_.ranges[k];
     const Point u = direction(range.from, range.to);
     const double a = own_variance(range.from, u);
@@ -286,7 +282,7 @@ std::vector<RangeCheck> RangeInformation::check_ranges() {
   std::vector<RangeCheck> checks(problem_.ranges.size());
   for (std::size_t k = 0; k < checks.size(); ++k) {
     auto& check = checks[k];
-    check.checked = between_placed(k);
+    check.checked = is_placed(placement_, problem_.ranges[k]);
     if (!check.checked) continue;
     const double own = noise(k);
     // The residual of a used range has the variance own - variance, and its

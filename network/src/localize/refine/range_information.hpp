@@ -75,7 +75,6 @@ class RangeInformation {
   void subtract_cross_terms(const std::vector<std::size_t>& exact,
                             std::vector<double>& variances) const;
   bool between_unknowns(std::size_t k) const;
-  bool between_placed(std::size_t k) const;
   double residual(std::size_t k) const;  // measured less predicted
   double information(std::size_t k) const;
   double noise(std::size_t k) const;  // its variance

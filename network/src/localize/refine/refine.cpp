@@ -8,6 +8,7 @@
 
 #include "isotherm/base/error.hpp"
 #include "isotherm/spectral/sparse/damped_step.hpp"
+#include "localize/constants.hpp"
 #include "localize/problem/geman_mcclure.hpp"
 #include "localize/problem/point_grid.hpp"
 #include "localize/problem/range_problem.hpp"
@@ -77,7 +78,8 @@ class SparseSystem {
 
   double cost() const {
     double sum = 0.0;
-    for (const auto& spring : springs_) sum += length_cost_(spring, arm(spring).norm()).cost;
+    for (const auto& spring : springs_)
+      sum += length_cost_(spring, distance_of(placement_, spring.from, spring.to)).cost;
     return sum;
   }
 
@@ -99,7 +101,8 @@ class SparseSystem {
       springs_.push_back(spring);
       if (from >= 0 && to >= 0 && spring.couples) pairs.emplace_back(from, to);
     }
-    return {problem_.dimension, count, pairs};
+    // Networks fill their factor as fields do, not as trajectories: dense blocks pay.
+    return {problem_.dimension, count, pairs, spectral::FactorForm::supernodal};
   }
 
   Point arm(const Spring& spring) const {
@@ -184,7 +187,7 @@ constexpr double kCouples = 8.0;
 constexpr double kFirstDamping = 1e-6;
 // Standard deviations that a node moves at a time: what is far outside of the noise has no
 // curvature, and would throw a node that hangs on little to where nothing fits.
-constexpr double kLongestStep = 4.0;
+constexpr double kLongestStep = kApart;
 constexpr double kNoGain = 1e-3;  // nats: what nobody can tell apart
 
 std::vector<Spring> all_springs(const RangeProblem& problem, const Placement& placement) {
@@ -206,17 +209,11 @@ void add_absent(const RangeProblem& problem, const Absence& absence, const Place
                 std::vector<Spring>& springs) {
   constexpr double kAround = 1.25;  // reaches
   if (!(absence.reach() > 0.0)) return;
-  std::vector<Index> nodes;
-  for (Index v = 0; v < problem.nodes; ++v) {
-    if (placement.placed[v]) nodes.push_back(v);
-  }
-  const auto wanted = [&](std::int32_t a, std::int32_t b) {
-    return !(problem.is_anchor[nodes[a]] && problem.is_anchor[nodes[b]]) &&
-           !has_range(problem, nodes[a], nodes[b]);
+  const auto wanted = [&](Index a, Index b) {
+    return !(problem.is_anchor[a] && problem.is_anchor[b]) && !has_range(problem, a, b);
   };
-  const Eigen::MatrixXd points = placement.positions(Eigen::all, nodes);
-  for (const auto& [a, b] : near_pairs(points, kAround * absence.reach(), wanted)) {
-    springs.push_back({.from = nodes[a], .to = nodes[b], .couples = false, .absent = true});
+  for (const auto& [a, b] : near_nodes(placement, kAround * absence.reach(), wanted)) {
+    springs.push_back({.from = a, .to = b, .couples = false, .absent = true});
   }
 }
 
@@ -246,6 +243,24 @@ RangeStatistics statistics_of(const RangeMixture& model, const std::vector<Sprin
   return statistics;
 }
 
+// Damped steps until one gains nothing. After each, with its number, what springs cost may change
+// by `learn`, which says whether it did.
+template <class Cost, class Learn>
+RefineOutcome climb(const RangeProblem& problem, const std::vector<Spring>& springs, Cost cost_of,
+                    int max_iterations, const Learn& learn, Placement& placement) {
+  SparseSystem system(problem, springs, cost_of, kLongestStep * problem.typical_sigma, placement);
+  if (system.unknowns() == 0) return {};
+  double damping = kFirstDamping;
+  double cost = system.cost();
+  for (int k = 1; k <= max_iterations; ++k) {
+    const double before = cost;
+    const bool moved = spectral::damped_step(system, damping, cost);
+    if (learn(k)) cost = system.cost();
+    if (!moved || before - cost < 2.0 * kNoGain) return {k, true};
+  }
+  return {max_iterations, false};
+}
+
 }  // namespace
 
 RefineOutcome refine_likelihood(const RangeProblem& problem, const std::vector<Spring>& springs,
@@ -254,16 +269,8 @@ RefineOutcome refine_likelihood(const RangeProblem& problem, const std::vector<S
   const auto cost_of = [&](const Spring& spring, double length) {
     return of_kinds(evidence.model, evidence.absence, spring, length);
   };
-  SparseSystem system(problem, springs, cost_of, kLongestStep * problem.typical_sigma, placement);
-  if (system.unknowns() == 0) return {};
-  double damping = kFirstDamping;
-  double cost = system.cost();
-  for (int k = 0; k < max_iterations; ++k) {
-    const double before = cost;
-    const bool moved = spectral::damped_step(system, damping, cost);
-    if (!moved || before - cost < 2.0 * kNoGain) return {k + 1, true};
-  }
-  return {max_iterations, false};
+  return climb(
+      problem, springs, cost_of, max_iterations, [](int) { return false; }, placement);
 }
 
 RefineOutcome refine_mixture(const RangeProblem& problem, const Absence& absence, bool too_long,
@@ -274,22 +281,16 @@ RefineOutcome refine_mixture(const RangeProblem& problem, const Absence& absence
   const auto cost_of = [&](const Spring& spring, double length) {
     return of_kinds(model, absence, spring, length);
   };
-  SparseSystem system(problem, springs, cost_of, kLongestStep * problem.typical_sigma, placement);
-  if (system.unknowns() == 0) return {};
   const double excess = typical_excess(problem.typical_sigma, model.longest);
-  double damping = kFirstDamping;
-  for (int k = 0; k < max_iterations; ++k) {
+  const auto learn = [&](int k) {
     const Progress done{"kinds of ranges", static_cast<std::uint64_t>(k),
                         static_cast<std::uint64_t>(max_iterations)};
     if (progress && !progress(done)) throw Cancelled();
-    double cost = system.cost();
-    const double before = cost;
-    const bool moved = spectral::damped_step(system, damping, cost);
     learn_kinds(statistics_of(model, springs, placement), excess, problem.typical_sigma, too_long,
                 model);
-    if (!moved || before - system.cost() < 2.0 * kNoGain) return {k + 1, true};
-  }
-  return {max_iterations, false};
+    return true;
+  };
+  return climb(problem, springs, cost_of, max_iterations, learn, placement);
 }
 
 }  // namespace isotherm::network::detail

@@ -19,14 +19,14 @@ std::vector<bool> ranges_in_reach(const RangeProblem& problem, const std::vector
 
 /// Moves the nodes to a minimum of Geman and McClure's loss of this width, in standard
 /// deviations, of the ranges that are not far outside it. @throws Cancelled
-RefineOutcome refine_at_width(const RangeProblem& problem, double width, int max_iterations,
-                              const LocalizeOptions& options, Placement& placement);
+void refine_at_width(const RangeProblem& problem, double width, const LocalizeOptions& options,
+                     Placement& placement);
 
 /// Robust refinement from a rough start: the loss narrows from where half of the ranges
 /// are well inside down to `sqrt(gate)` standard deviations. Ranges far outside, and until the last
 /// stage those that are not trusted, are left out (false ranges between far nodes would fill the
 /// factorisation). Then nodes in wrong places are moved and the fit repeated until none is.
-RefineOutcome refine_robustly(const RangeProblem& problem, const std::vector<bool>& trusted,
-                              double gate, const LocalizeOptions& options, Placement& placement);
+void refine_robustly(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
+                     const LocalizeOptions& options, Placement& placement);
 
 }  // namespace isotherm::network::detail

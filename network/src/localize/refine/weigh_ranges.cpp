@@ -26,10 +26,6 @@ Residual residual_of(const RangeProblem& problem, const Placement& placement,
           std::pow(model.sigma(problem.sigmas[k]), 2)};
 }
 
-bool between_placed(const RangeProblem& problem, const Placement& placement, std::size_t k) {
-  return are_placed(placement, problem.ranges[k].from, problem.ranges[k].to);
-}
-
 // Weights and evidence where the nodes are.
 void assess(const RangeProblem& problem, const Absence& absence, const Placement& placement,
             WeighedRanges& weighed) {
@@ -39,7 +35,7 @@ void assess(const RangeProblem& problem, const Absence& absence, const Placement
       log_prior_cost(weighed.model, typical_excess(problem.typical_sigma, weighed.model.longest),
                      weighed.too_long);
   for (std::size_t k = 0; k < problem.ranges.size(); ++k) {
-    if (!between_placed(problem, placement, k)) continue;
+    if (!is_placed(placement, problem.ranges[k])) continue;
     const auto [error, noise] = residual_of(problem, placement, weighed.model, k);
     const auto loss = range_loss(weighed.model, error, noise);
     cost += loss.cost;
@@ -89,7 +85,7 @@ std::vector<JudgedRange> judge_ranges(const RangeProblem& problem, const Weighed
                              .predicted_variances();
   std::vector<JudgedRange> judged(problem.ranges.size());
   for (std::size_t k = 0; k < judged.size(); ++k) {
-    if (!between_placed(problem, placement, k)) continue;
+    if (!is_placed(placement, problem.ranges[k])) continue;
     const auto [error, noise] = residual_of(problem, placement, weighed.model, k);
     const auto loss = range_loss(weighed.model, error, noise);
     const double curvature = weighed.weighs[k] ? weighed.information[k] : 0.0;

@@ -6,8 +6,10 @@
 #include <queue>
 #include <utility>
 
+#include <Eigen/Eigenvalues>
+
+#include "localize/constants.hpp"
 #include "localize/problem/absence.hpp"
-#include "localize/problem/classical_scaling.hpp"
 #include "localize/problem/point_grid.hpp"
 #include "localize/refine/refine.hpp"
 
@@ -81,11 +83,22 @@ Pilots choose_pilots(const RangeProblem& problem, const std::vector<bool>& trust
   return pilots;
 }
 
+// Eigenpairs of the inner products of points about their centre, from their squared distances: the
+// points' coordinates are the last eigenvectors times the roots of their values (W. Torgerson,
+// "Multidimensional scaling", 1952).
+Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> classical_scaling(const Eigen::MatrixXd& squared,
+                                                                 const Eigen::RowVectorXd& means) {
+  Eigen::MatrixXd inner = squared.rowwise() - means;
+  inner.colwise() -= means.transpose();
+  inner.array() += means.mean();
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(-0.5 * inner);
+}
+
 // Classical scaling of the pilots; the others by their distances from these.
 Eigen::MatrixXd scale(const Pilots& pilots, int d) {
   const Eigen::MatrixXd among = pilots.squared(pilots.which, Eigen::all);
   const Eigen::RowVectorXd means = among.colwise().mean();
-  const auto eigen = classical_scaling(among);
+  const auto eigen = classical_scaling(among, means);
   const auto n = among.rows();
   Eigen::MatrixXd positions = Eigen::MatrixXd::Zero(d, pilots.squared.rows());
   for (Eigen::Index i = 0; i < std::min<Eigen::Index>(d, n); ++i) {
@@ -124,10 +137,10 @@ class Unfolding {
 
   // From a loss that is wide beside the errors of the map down to that of a range.
   void run(double gate) {
-    constexpr double kStart = 1.5;   // typical ranges
-    constexpr double kLeast = 0.02;  // the same; narrower ones are for the refinement
-    const double narrow = std::max(std::sqrt(gate), kLeast * problem_.typical_distance / sigma_);
-    wide_ = std::max(narrow, kStart * problem_.typical_distance / sigma_);
+    constexpr double kNarrowest = 0.02;  // typical ranges; the rest is for the refinement
+    const double narrow =
+        std::max(std::sqrt(gate), kNarrowest * problem_.typical_distance / sigma_);
+    wide_ = std::max(narrow, kRoughMap * problem_.typical_distance / sigma_);
     for (double width = wide_; width > narrow; width *= 0.5) fit(width);
     fit(narrow);
   }
@@ -158,17 +171,10 @@ class Unfolding {
   }
 
   void add_repulsion(std::vector<Spring>& springs) const {
-    constexpr double kSigma = 0.05;  // reaches
-    constexpr double kWidth = 6.0;
     if (!(reach_ > 0.0)) return;
-    std::vector<Index> nodes;
-    for (Index v = 0; v < problem_.nodes; ++v) {
-      if (placement_.placed[v]) nodes.push_back(v);
-    }
-    const Eigen::MatrixXd points = placement_.positions(Eigen::all, nodes);
-    for (const auto& [a, b] : near_pairs(points, reach_)) {
-      if (has_range(problem_, nodes[a], nodes[b])) continue;
-      springs.push_back({nodes[a], nodes[b], reach_, kSigma * reach_, 0.0, kWidth});
+    for (const auto& [a, b] : near_nodes(placement_, reach_)) {
+      if (!has_range(problem_, a, b))
+        springs.push_back({a, b, reach_, kRepulsion * reach_, 0.0, kRepulsionWidth});
     }
   }
 

@@ -4,13 +4,11 @@
 #include <utility>
 
 #include "isotherm/base/parallel.hpp"
+#include "localize/constants.hpp"
 #include "localize/start/anchor_frame.hpp"
 
 namespace isotherm::network::detail {
 namespace {
-
-// Steps from the middle of a region to its outermost nodes.
-constexpr int kSteps = 5;
 
 struct Region {
   std::vector<Index> nodes;
@@ -24,7 +22,7 @@ Region region_around(const RangeProblem& problem, const std::vector<bool>& trust
   std::vector<bool> seen(problem.nodes, false);
   seen[middle] = true;
   std::size_t last = 0;  // the first node of the last step
-  for (int step = 0; step < kSteps; ++step) {
+  for (int step = 0; step < kRegionSteps; ++step) {
     const std::size_t end = region.nodes.size();
     for (std::size_t k = last; k < end; ++k) {
       for (const auto& [vertex, edge] : problem.pair_graph.neighbours(region.nodes[k])) {
@@ -71,10 +69,26 @@ struct Part {
   }
 };
 
+// Nothing where its outermost nodes do not say where it lies.
+Placement draw(const Part& part, Drawing drawing, Errors errors, double gate,
+               const LocalizeOptions& options) {
+  if (drawing == Drawing::springs) {
+    auto map = part.placement;
+    unfold(part.problem, part.trusted, errors, gate, options, map);
+    return map;
+  }
+  auto free = part.problem;
+  free.is_anchor.assign(free.nodes, false);
+  auto map = map_by_paths(free, part.trusted, part.trusted, errors, gate, options);
+  if (!align_to_anchors(part.problem, part.placement, map)) return {};
+  return map;
+}
+
 }  // namespace
 
-Placement redraw(const RangeProblem& problem, const std::vector<bool>& trusted, Errors errors,
-                 double gate, const LocalizeOptions& options, const Placement& placement) {
+Placement redraw(const RangeProblem& problem, const std::vector<bool>& trusted, Drawing drawing,
+                 Errors errors, const std::vector<bool>& among, double gate,
+                 const LocalizeOptions& options, const Placement& placement) {
   std::vector<int> against(problem.nodes, 0);
   for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
     const auto& pair = problem.pairs[p];
@@ -85,7 +99,7 @@ Placement redraw(const RangeProblem& problem, const std::vector<bool>& trusted, 
   }
   std::vector<Index> order;
   for (Index v = 0; v < problem.nodes; ++v) {
-    if (against[v] > 0) order.push_back(v);
+    if (among[v] && against[v] > 0) order.push_back(v);
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](Index a, Index b) { return against[a] > against[b]; });
@@ -103,12 +117,9 @@ Placement redraw(const RangeProblem& problem, const std::vector<bool>& trusted, 
   parallel_for(static_cast<std::int64_t>(regions.size()), options.threads, options.progress,
                "regions", [&](std::int64_t k) {
                  const Part part(problem, trusted, placement, regions[k]);
-                 auto free = part.problem;
-                 free.is_anchor.assign(free.nodes, false);
                  auto quiet = options;
                  quiet.progress = {};
-                 maps[k] = map_by_paths(free, part.trusted, part.trusted, errors, gate, quiet);
-                 if (!align_to_anchors(part.problem, part.placement, maps[k])) maps[k] = {};
+                 maps[k] = draw(part, drawing, errors, gate, quiet);
                });
   auto result = placement;
   for (std::size_t k = 0; k < regions.size(); ++k) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "isotherm/spectral/edges/judge_edges.hpp"
+#include "localize/constants.hpp"
 #include "localize/evidence/crowd.hpp"
 #include "localize/evidence/evidence.hpp"
 #include "localize/fold/open_folds.hpp"
@@ -35,14 +36,14 @@ class Search {
   }
 
   Placement run() {
-    constexpr double kLikely = 0.5;
     if (options_.method != LocalizeMethod::robust) return started(trusted_, trusted_, Errors::any);
     const auto likely = likely_pairs(problem_, kLikely, options_);
-    consider(started(likely, likely, Errors::any));
+    has_false_ = std::find(likely.begin(), likely.end(), false) != likely.end();
+    const auto supported = has_false_ ? supported_pairs(problem_, likely) : likely;
+    consider(started(supported, supported, Errors::any));
     unfold_best();
-    if (!is_enough()) try_other_starts(likely);
+    if (!is_enough()) try_other_starts(supported);
     for (int round = 0; round < kMostRounds && consider_redrawn(); ++round) unfold_best();
-    for (int round = 0; round < kMostRounds && consider(loosened(best_)); ++round) unfold_best();
     return std::move(best_);
   }
 
@@ -52,13 +53,8 @@ class Search {
     return in_frame(map_by_paths(free_, paths, pairs, errors, gate_, options_));
   }
 
-  void try_other_starts(const std::vector<bool>& likely) {
-    has_false_ = std::find(likely.begin(), likely.end(), false) != likely.end();
-    if (has_false_) {
-      const auto supported = supported_pairs(problem_, likely);
-      consider(started(supported, supported, Errors::any));
-      consider(started(supported, supported, Errors::too_long));
-    }
+  void try_other_starts(const std::vector<bool>& supported) {
+    if (has_false_) consider(started(supported, supported, Errors::too_long));
     consider(started(trusted_, trusted_, Errors::too_long));
     unfold_best();
     for (int round = 0; round < kMostRounds && try_without_contradicted(); ++round) unfold_best();
@@ -87,21 +83,6 @@ class Search {
     return map;
   }
 
-  // From ranges whose deviation is a tenth of the typical one, halved again and again, down to what
-  // is stated.
-  Placement loosened(Placement map) const {
-    constexpr double kLoose = 0.1;
-    for (double factor = kLoose * problem_.typical_distance / problem_.typical_sigma; factor > 1.0;
-         factor *= 0.5) {
-      auto rough = problem_;
-      rough.typical_sigma *= factor;
-      for (auto& sigma : rough.sigmas) sigma *= factor;
-      for (auto& pair : rough.pairs) pair.sigma *= factor;
-      refine_robustly(rough, trusted_, gate_, options_, map);
-    }
-    return map;
-  }
-
   std::vector<bool> uncontradicted() const {
     auto pairs = trusted_;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
@@ -118,18 +99,32 @@ class Search {
     return merge(std::move(map));
   }
 
-  // Whether some region of it is better drawn anew.
+  // Whether some region of it is better drawn anew, of those that are not as they were last time.
   bool consider_redrawn() {
-    bool any = false;
-    for (const auto errors : {Errors::any, Errors::too_long}) {
-      any = merge(redraw(problem_, trusted_, errors, gate_, options_, best_)) || any;
+    const auto among = within_steps(problem_, changed_since(redrawn_), kRegionSteps, trusted_);
+    redrawn_ = best_;
+    const auto drawn = [&](Drawing drawing, Errors errors) {
+      return merge(redraw(problem_, trusted_, drawing, errors, among, gate_, options_, best_));
+    };
+    bool any = drawn(Drawing::paths, Errors::any);
+    any = drawn(Drawing::paths, Errors::too_long) || any;
+    return drawn(Drawing::springs, best_errors_) || any;
+  }
+
+  // Nodes that are elsewhere in the best map; all since there was none.
+  std::vector<Index> changed_since(const Placement& before) const {
+    std::vector<Index> changed;
+    for (Index v = 0; v < problem_.nodes; ++v) {
+      const bool is_same = !before.placed.empty() && before.placed[v] == best_.placed[v] &&
+                           (before.positions.col(v) - best_.positions.col(v)).norm() <=
+                               kApart * problem_.typical_sigma;
+      if (!is_same) changed.push_back(v);
     }
-    return any;
+    return changed;
   }
 
   // The better one of both, with the parts that are better in the other.
   bool merge(Placement map) {
-    constexpr double kGain = 2.0;  // of the worth, for which it is worth going on
     double reached = worth(problem_, trusted_, map);
     const double before = worth_;
     if (reached > worth_) {
@@ -147,7 +142,7 @@ class Search {
         }
       }
     }
-    return worth_ > before + kGain;
+    return worth_ > before + kBetter;
   }
 
   // Without anchors every map has its own.
@@ -173,7 +168,6 @@ class Search {
 
   // Whether hardly a trusted pair is contradicted.
   bool is_enough() const {
-    constexpr double kHardly = 0.005;
     double pairs = 0.0;
     double against = 0.0;
     for (std::size_t p = 0; p < problem_.pairs.size(); ++p) {
@@ -182,7 +176,7 @@ class Search {
       pairs += 1.0;
       if (squared_deviation(best_, pair) > gate_) against += 1.0;
     }
-    return against <= kHardly * pairs;
+    return against <= kHardlyAny * pairs;
   }
 
   const RangeProblem& problem_;
@@ -192,6 +186,7 @@ class Search {
   double gate_;
   const LocalizeOptions& options_;
   Placement best_;
+  Placement redrawn_;  // the best map when regions were drawn last
   double worth_ = -std::numeric_limits<double>::infinity();
   bool has_false_ = false;            // whether heat finds any false pair
   double unfolded_ = worth_;          // when folds were opened last

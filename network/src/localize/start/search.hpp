@@ -17,12 +17,13 @@ std::vector<bool> likely_pairs(const RangeProblem& problem, double chance,
 std::vector<bool> supported_pairs(const RangeProblem& problem, const std::vector<bool>& pairs);
 
 /// The map of the highest objective that is found. A start is a map by shortest paths, unfolded by
-/// springs: of the pairs that are likelier true than not; unless hardly a trusted pair contradicts
-/// that one, of those of them that others support, of all that heat leaves, and of those that the
-/// best map does not contradict. Each is refined, and of two maps each part is taken from where it
-/// is likelier. So is what comes of mirroring parts of the best map, unfolding it again, drawing
-/// regions of it anew and refining it from loose ranges, as long as that helps. Plain least squares
-/// has the first map as it is. @throws Cancelled
+/// springs: of the pairs that are likelier true than not and that others support; unless hardly a
+/// trusted pair contradicts that one, of the same as ranges that may be too long, of all that heat
+/// leaves, and of those that the best map does not contradict. Each is refined, and of two maps
+/// each part is taken from where it is likelier. So is what comes of mirroring parts of the best
+/// map, unfolding it again, and drawing regions of it anew, from their paths or as springs from
+/// where they are, as long as that helps. Plain least squares has the first map as it is. @throws
+/// Cancelled
 Placement search_map(const RangeProblem& problem, const Placement& anchors,
                      const std::vector<bool>& trusted, double gate, const LocalizeOptions& options);
 
