@@ -69,7 +69,7 @@ void Snapshot<Pose>::climb_from_nothing(bool everywhere) {
   const double before = work_;
   const auto nearness_before = assessment().nearness_found();
   if (everywhere) {
-    for (const auto& peak : search(*climb_, false)) {
+    for (const auto& peak : search(*climb_, {.to_the_last = false, .sample_soon = true})) {
       surpassed_ = add(peak) || surpassed_;
     }
   } else {

@@ -41,15 +41,16 @@ KnownBefore known_of(const std::vector<Index>& sampled, std::size_t all) {
 // Where the climbs on a sample of the loops ended; none of few loops, or where few are true: these
 // tell nothing of scales.
 template <class Pose>
-std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole, std::size_t every) {
+std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole, bool soon) {
   const Objective<Pose>& objective = whole.objective();
   const auto& all = objective.stated().reduced;
-  const auto sampled = sample(all, whole.options().window, every);
+  const std::size_t most = soon ? 1 + all.loops.size() / (2 * kLeastSample) : kBatchGrowth;
+  const auto sampled = sample(all, whole.options().window, std::min(most, kBatchGrowth));
   std::vector<Standpoint<Pose>> standpoints;
   if (sampled.empty()) return standpoints;
   const Objective<Pose> part = objective.of(sampled);
   Climb<Pose> climb = whole.on(part);
-  const auto found = search(climb, false);
+  const auto found = search(climb, {.to_the_last = false, .sample_soon = soon});
   if (accepted_by(found.front()) < kFewLoops) return standpoints;
   const double least = found.front().evidence - log_odds_of(1.0 - whole.options().significance);
   const KnownBefore known = known_of(sampled, all.loops.size());
@@ -78,13 +79,11 @@ void climb_from_the_best(Climb<Pose>& climb, std::vector<Explanation<Pose>>& fou
 }  // namespace
 
 template <class Pose>
-std::vector<Explanation<Pose>> search(Climb<Pose>& climb, bool to_the_last) {
+std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   const bool calibrate = climb.options().calibrate;
-  const std::size_t loops = climb.objective().stated().reduced.loops.size();
-  const std::size_t least = std::min(kBatchGrowth, 1 + loops / (2 * kLeastSample));
   std::vector<Explanation<Pose>> found;
   const auto try_from = [&](const auto& start) { found.push_back(climb.from(start)); };
-  for (const auto& standpoint : standpoints(climb, to_the_last ? kBatchGrowth : least)) {
+  for (const auto& standpoint : standpoints(climb, depth.sample_soon)) {
     unless_it_breaks_down(try_from, standpoint);
   }
   const auto astray = [&] {
@@ -93,7 +92,7 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, bool to_the_last) {
   };
   if (astray()) {
     climb_from_each_start(calibrate, try_from);
-    if (calibrate && to_the_last && !astray()) climb_from_the_best(climb, found);
+    if (calibrate && depth.to_the_last && !astray()) climb_from_the_best(climb, found);
   }
   if (calibrate && astray()) {
     for (const auto& start : gaining_starts(climb)) unless_it_breaks_down(try_from, start);
@@ -103,7 +102,7 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, bool to_the_last) {
   return found;
 }
 
-template std::vector<Explanation<Pose2>> search(Climb<Pose2>&, bool);
-template std::vector<Explanation<Pose3>> search(Climb<Pose3>&, bool);
+template std::vector<Explanation<Pose2>> search(Climb<Pose2>&, SearchDepth);
+template std::vector<Explanation<Pose3>> search(Climb<Pose3>&, SearchDepth);
 
 }  // namespace isotherm::slam::detail
