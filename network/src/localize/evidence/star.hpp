@@ -16,7 +16,9 @@ struct Arm {
   RangeCost cost;
 
   /// (distance between the ends - range) / sigma.
-  double residual(const Point& place) const { return (distance_between(end, place) - distance) / sigma; }
+  double residual(const Point& place) const {
+    return (distance_between(end, place) - distance) / sigma;
+  }
 };
 
 /// What speaks for and against places of one node.
