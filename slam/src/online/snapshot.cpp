@@ -6,6 +6,7 @@
 #include "isotherm/base/error.hpp"
 #include "isotherm/slam/graph/usable_odometry.hpp"
 #include "prune/consensus/climb/report.hpp"
+#include "prune/consensus/climb/sample.hpp"
 #include "prune/consensus/climb/search.hpp"
 #include "prune/consensus/judge.hpp"
 
@@ -79,7 +80,11 @@ void Snapshot<Pose>::climb_from_nothing(bool everywhere) {
   const double done = (nearness.times - nearness_before.times) * nearness.kWork;
   search_work_ = {(nearness.assessments - nearness_before.assessments) * nearness.kWork,
                   work_ - before - done};
-  if (roles_.candidates.size() < 2 * kLeastSample) searches_a_batch_takes_ = kToTheLast;
+}
+
+template <class Pose>
+double Snapshot<Pose>::searches_a_batch_takes() const {
+  return sampled_at_most(roles_.candidates.size()) < 2 ? kToTheLast : 1.0;
 }
 
 // Whether it is the best so far.

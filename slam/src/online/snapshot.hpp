@@ -34,7 +34,7 @@ class Snapshot {
   };
   const SearchWork& search_work() const noexcept { return search_work_; }
   /// A batch takes as much as so many.
-  double searches_a_batch_takes() const noexcept { return searches_a_batch_takes_; }
+  double searches_a_batch_takes() const;
 
   /// False where no loop can be judged by evidence: then there is nothing but graph() and verdicts.
   bool explained() const noexcept { return climb_.has_value(); }
@@ -78,7 +78,6 @@ class Snapshot {
   bool surpassed_ = false;
   double work_ = 0.0;
   SearchWork search_work_;
-  double searches_a_batch_takes_ = 1.0;
   std::size_t nearness_of_ = 0;  // edges of the graph that the density of near pairs is of
   PruneResult verdicts_;
 };

@@ -44,8 +44,8 @@ template <class Pose>
 std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole, bool soon) {
   const Objective<Pose>& objective = whole.objective();
   const auto& all = objective.stated().reduced;
-  const std::size_t most = soon ? 1 + all.loops.size() / (2 * kLeastSample) : kBatchGrowth;
-  const auto sampled = sample(all, whole.options().window, std::min(most, kBatchGrowth));
+  const std::size_t every = soon ? sampled_at_most(all.loops.size()) : kBatchGrowth;
+  const auto sampled = sample(all, whole.options().window, every);
   std::vector<Standpoint<Pose>> standpoints;
   if (sampled.empty()) return standpoints;
   const Objective<Pose> part = objective.of(sampled);
