@@ -133,7 +133,8 @@ class FollowVerb::Session {
       events_.tell(change, now());
     }
     const auto decided = online_.verdicts();
-    const auto graph = online_.graph();
+    const bool with_map = errors_ || !verb_.output.empty();
+    const auto graph = with_map ? online_.graph() : online_.input();  // a map takes a solution
     if (errors_) tell_error(graph);
     events_.end(decided, now());
     if (!verb_.output.empty()) {

@@ -61,6 +61,7 @@ void OnlineEngine<Pose>::add_silently(VertexId from, VertexId to, const Pose& T_
                                       const Matrix& information, LinkKind link) {
   const bool step = log_.add(from, to, T_from_to, information, link).step;
   rows_.emplace_back();
+  finished_ = false;
   if (step) return;
   ++loops_;
   last_loop_ = static_cast<Index>(rows_.size()) - 1;
@@ -351,6 +352,7 @@ std::vector<LoopChange> OnlineEngine<Pose>::finish() {
   for (auto& row : rows_) row.now.reset();  // what has become odometry meanwhile has no verdict
   take_over(final);
   std::erase_if(fresh_, [this](Index edge) { return !rows_[edge].now; });
+  finished_ = true;
   return changes();
 }
 
@@ -363,9 +365,10 @@ spectral::EdgeVerdicts OnlineEngine<Pose>::verdicts() const {
   return all;
 }
 
-// Whether loops are thought true that the snapshot has not accepted.
+// Whether other loops may be thought true than the snapshot has accepted.
 template <class Pose>
 bool OnlineEngine<Pose>::has_news() const {
+  if (finished_) return true;
   return outlook_ && std::ranges::any_of(standings_, [this](const auto& known) {
            return is_accepted(known.first);
          });
@@ -389,7 +392,8 @@ void OnlineEngine<Pose>::bring_up_to_date(PoseGraph<Pose>& graph) const {
   const auto& best = map_->best();
   const Accuracy<Pose> accuracy{best.scale.odometry * best.shapes.odometry,
                                 best.scale.loops * best.shapes.loops};
-  settle_poses(graph, steps, used, accuracy);
+  settle_poses(graph, steps, used, accuracy,
+               finished_ ? Judged::together : Judged::when_they_came);
 }
 
 // Vertices that the map has not follow odometry.

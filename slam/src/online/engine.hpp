@@ -103,6 +103,7 @@ class OnlineEngine {
   Index search_of_ = 1;          // loops that it had
   double searches_work_ = 0.0;   // of all of those
   double following_work_ = 0.0;  // of following up
+  bool finished_ = false;        // verdicts are the batch's on all that has come
 };
 
 extern template class OnlineEngine<Pose2>;

@@ -9,7 +9,7 @@ namespace isotherm::slam::detail {
 
 template <class Pose>
 void settle_poses(PoseGraph<Pose>& graph, const std::vector<bool>& is_step,
-                  const std::vector<bool>& used, const Accuracy<Pose>& accuracy) {
+                  const std::vector<bool>& used, const Accuracy<Pose>& accuracy, Judged judged) {
   PoseGraph<Pose> part{graph.ids, graph.poses, {}, graph.fixed};
   EdgeRoles roles;
   for (std::size_t k = 0; k < graph.constraints.size(); ++k) {
@@ -22,7 +22,7 @@ void settle_poses(PoseGraph<Pose>& graph, const std::vector<bool>& is_step,
     part.constraints.push_back(std::move(constraint));
   }
   OptimizeOptions options;
-  options.kernel = RobustKernel::gnc;
+  options.kernel = judged == Judged::together ? RobustKernel::none : RobustKernel::gnc;
   options.initialization = Initialization::file;
   try {
     graph.poses = optimize(part, roles, options).poses;
@@ -32,8 +32,8 @@ void settle_poses(PoseGraph<Pose>& graph, const std::vector<bool>& is_step,
 }
 
 template void settle_poses(PoseGraph<Pose2>&, const std::vector<bool>&, const std::vector<bool>&,
-                           const Accuracy<Pose2>&);
+                           const Accuracy<Pose2>&, Judged);
 template void settle_poses(PoseGraph<Pose3>&, const std::vector<bool>&, const std::vector<bool>&,
-                           const Accuracy<Pose3>&);
+                           const Accuracy<Pose3>&, Judged);
 
 }  // namespace isotherm::slam::detail

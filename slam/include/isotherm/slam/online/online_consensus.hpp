@@ -94,7 +94,8 @@ class OnlineConsensus {
 
   /// All vertices and edges so far; where there are loops, with the current estimate as poses,
   /// which takes a few solutions of the map where the search has not seen all loops yet: without
-  /// those that all others contradict, whatever was thought of them when they came.
+  /// those that all others contradict, whatever was thought of them when they came. After finish()
+  /// it takes one, of what is kept.
   PoseGraph<Pose> graph() const;
 
   /// The same as added, without an estimate: what a file of the same edges holds.
