@@ -145,7 +145,7 @@ std::vector<double> Climb<Pose>::first_gains(const std::vector<CovarianceScale>&
     assessment_.weigh_at(now_, scale);
     predict_runs();
     gains.push_back(0.0);
-    for (const Group& group : groups()) gains.back() += group.gain;
+    for (const Group& group : gaining_groups()) gains.back() += group.gain;
   }
   return gains;
 }
@@ -254,7 +254,8 @@ bool Climb<Pose>::has_fallen_behind() const {
 // False where no move is left.
 template <class Pose>
 bool Climb<Pose>::move() {
-  return shift() || learn_more_than(0.0) || weigh_by_others() || weigh_otherwise();
+  return shift() || learn_more_than(0.0) || weigh_by_others() || weigh_otherwise() ||
+         accept_many_more(0.0);
 }
 
 // The same at about these scales.
@@ -266,7 +267,7 @@ bool Climb<Pose>::shift() {
   if (!batch.loops.empty() && batch.gain > dropping) {
     accept(batch.loops);
   } else if (!out.empty()) {
-    if (!learn_more_than(dropping)) drop(out);
+    if (!learn_more_than(dropping) && !accept_many_more(dropping)) drop(out);
   } else {
     return false;
   }
@@ -306,6 +307,24 @@ bool Climb<Pose>::weigh_otherwise() {
     return true;
   }
   failed_[Trial::wide_loops] = true;
+  return false;
+}
+
+// Whether loops of which none gains alone, while few are thought true, gain more than this
+// together.
+template <class Pose>
+bool Climb<Pose>::accept_many_more(double gain) {
+  if (failed_[Trial::many_more]) return false;
+  const std::size_t had = accepted_count();
+  const Group more = likeliest_together(groups(), had, now_.accepted.size());
+  const auto accept_them = [&](auto& now) {
+    for (const Index k : more.loops) now.accepted[k] = true;
+  };
+  if (more.gain > std::max(gain, kBetter) && try_with(accept_them)) {
+    note(more.loops.size(), 0);
+    return true;
+  }
+  failed_[Trial::many_more] = true;
   return false;
 }
 
@@ -377,13 +396,20 @@ std::vector<Group> Climb<Pose>::groups() const {
   for (std::size_t k = 0; k < open.size(); ++k) {
     open[k] = !now_.accepted[k] && !dropped_[k];
   }
-  return gaining_groups(objective_.runs(), open, now_.standings, run_density_,
-                        [&](Index k) { return assessment_.log_alternative(k); });
+  return groups_of(objective_.runs(), open, now_.standings, run_density_,
+                   [&](Index k) { return assessment_.log_alternative(k); });
+}
+
+template <class Pose>
+std::vector<Group> Climb<Pose>::gaining_groups() const {
+  auto all = groups();
+  std::erase_if(all, [](const Group& group) { return group.gain <= 0.0; });
+  return all;
 }
 
 template <class Pose>
 Group Climb<Pose>::next_batch() const {
-  return most_certain(groups(), accepted_count());
+  return most_certain(gaining_groups(), accepted_count());
 }
 
 template <class Pose>

@@ -72,7 +72,7 @@ class Climb {
   bool settled() const noexcept { return settled_; }
 
  private:
-  enum Trial { lesson, lesson_of_scales, weights_by_others, wide_loops };
+  enum Trial { lesson, lesson_of_scales, weights_by_others, wide_loops, many_more, trials };
 
   using Layout = typename Estimate<Pose>::Layout;
   using Change = std::function<void(Explanation<Pose>&)>;
@@ -82,7 +82,7 @@ class Climb {
     Explanation<Pose> now;
     typename Assessment<Pose>::Findings found;
     std::vector<double> run_density;
-    std::array<bool, 4> failed;
+    std::array<bool, trials> failed;
   };
 
   // Where a climb was, and the number of the peak that it led to; of this one that of the next.
@@ -112,11 +112,13 @@ class Climb {
   double gain_of_dropping(const Selection& loops) const;
   void drop(const Selection& loops);
   std::vector<Group> groups() const;
+  std::vector<Group> gaining_groups() const;
   Group next_batch() const;
   void accept(const Selection& loops);
   bool learn_more_than(double gain);
   bool weigh_by_others();
   bool weigh_otherwise();
+  bool accept_many_more(double gain);
   void draw_anew();
   bool try_with(const Change& change, double gain = kBetter, const Layout* from = nullptr);
   Place place() const { return {now_, assessment_.findings(), run_density_, failed_}; }
@@ -136,12 +138,12 @@ class Climb {
   std::vector<double> run_density_;       // log p(z | the loop before in its run)
   std::vector<Explanation<Pose>> peaks_;  // of earlier climbs
   std::vector<Passed> passed_;
-  std::size_t began_ = 0;         // of those passed, this climb
-  std::size_t longest_ = 0;       // of earlier climbs
-  std::vector<bool> dropped_;     // since the climb last rose; not tried again
-  std::size_t learnt_from_ = 0;   // loops, at the last lesson
-  std::size_t drawn_from_ = 0;    // loops, when the map was last drawn anew
-  std::array<bool, 4> failed_{};  // trials here; not repeated until a change
+  std::size_t began_ = 0;              // of those passed, this climb
+  std::size_t longest_ = 0;            // of earlier climbs
+  std::vector<bool> dropped_;          // since the climb last rose; not tried again
+  std::size_t learnt_from_ = 0;        // loops, at the last lesson
+  std::size_t drawn_from_ = 0;         // loops, when the map was last drawn anew
+  std::array<bool, trials> failed_{};  // trials here; not repeated until a change
   std::vector<ConsensusMove> moves_;
   bool settled_ = true;
 };

@@ -7,6 +7,7 @@
 #include "graph/find_root.hpp"
 #include "prune/consensus/constants.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
+#include "prune/consensus/objective/log_prior.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -52,28 +53,27 @@ std::vector<Index> numbered_parts(const std::vector<Group>& groups) {
 }  // namespace
 
 template <class Pose>
-std::vector<Group> gaining_groups(const Runs<Pose>& runs, const std::vector<bool>& open,
-                                  const std::vector<Standing>& standings,
-                                  const std::vector<double>& run_density,
-                                  const std::function<double(Index)>& alternative) {
-  std::vector<Group> gaining;
+std::vector<Group> groups_of(const Runs<Pose>& runs, const std::vector<bool>& open,
+                             const std::vector<Standing>& standings,
+                             const std::vector<double>& run_density,
+                             const std::function<double(Index)>& alternative) {
+  std::vector<Group> groups;
   for (auto& loops : runs_of(runs, open, run_density, alternative)) {
     const Index seed =
         *std::ranges::max_element(loops, {}, [&](Index k) { return standings[k].evidence; });
-    double gain = standings[seed].log_odds - standings[seed].evidence;
+    double evidence = 0.0;
     for (const Index k : loops) {
-      double evidence = standings[k].evidence;
+      double own = standings[k].evidence;
       const Index before = runs.before(k);
       if (k != seed && before != Runs<Pose>::kNone && std::ranges::binary_search(loops, before)) {
-        evidence = std::max(evidence, run_density[k] - alternative(k));
+        own = std::max(own, run_density[k] - alternative(k));
       }
-      gain += evidence;
+      evidence += own;
     }
-    if (gain > 0.0) {
-      gaining.push_back({std::move(loops), gain, standings[seed].parts});
-    }
+    const double prior = standings[seed].log_odds - standings[seed].evidence;
+    groups.push_back({std::move(loops), prior + evidence, evidence, standings[seed].parts});
   }
-  return gaining;
+  return groups;
 }
 
 Group most_certain(std::vector<Group> groups, std::size_t accepted) {
@@ -83,7 +83,7 @@ Group most_certain(std::vector<Group> groups, std::size_t accepted) {
   double expected_false = 0.0;
   const double most_false =
       std::max(kMostExpectedFalse, kFalseShare * static_cast<double>(accepted));
-  for (const auto& [members, gain, parts] : groups) {
+  for (const auto& [members, gain, evidence, parts] : groups) {
     expected_false += probability_of(-gain);
     const bool many =
         all.loops.size() + members.size() > kBatchGrowth * std::max<std::size_t>(accepted, 1);
@@ -100,11 +100,34 @@ Group most_certain(std::vector<Group> groups, std::size_t accepted) {
   return all;
 }
 
-template std::vector<Group> gaining_groups(const Runs<Pose2>&, const std::vector<bool>&,
-                                           const std::vector<Standing>&, const std::vector<double>&,
-                                           const std::function<double(Index)>&);
-template std::vector<Group> gaining_groups(const Runs<Pose3>&, const std::vector<bool>&,
-                                           const std::vector<Standing>&, const std::vector<double>&,
-                                           const std::function<double(Index)>&);
+// By evidence a loop: of as many loops these have most.
+Group likeliest_together(std::vector<Group> groups, std::size_t accepted, std::size_t all) {
+  std::erase_if(groups, [](const Group& group) { return group.parts.first != group.parts.second; });
+  std::ranges::stable_sort(groups, std::greater{}, [](const Group& group) {
+    return group.evidence / static_cast<double>(group.loops.size());
+  });
+  const double before = log_prior(accepted, all);
+  Group together;
+  std::size_t most = 0;  // loops, where they gain most
+  double evidence = 0.0;
+  for (const Group& group : groups) {
+    together.loops.insert(together.loops.end(), group.loops.begin(), group.loops.end());
+    evidence += group.evidence;
+    const double prior = log_prior(accepted + together.loops.size(), all) - before;
+    if (evidence + prior <= together.gain) continue;
+    most = together.loops.size();
+    together.evidence = evidence;
+    together.gain = evidence + prior;
+  }
+  together.loops.resize(most);
+  return together;
+}
+
+template std::vector<Group> groups_of(const Runs<Pose2>&, const std::vector<bool>&,
+                                      const std::vector<Standing>&, const std::vector<double>&,
+                                      const std::function<double(Index)>&);
+template std::vector<Group> groups_of(const Runs<Pose3>&, const std::vector<bool>&,
+                                      const std::vector<Standing>&, const std::vector<double>&,
+                                      const std::function<double(Index)>&);
 
 }  // namespace isotherm::slam::detail

@@ -7,18 +7,10 @@
 
 #include "prune/consensus/estimate/log_normal.hpp"
 #include "prune/consensus/estimate/map_volume.hpp"
+#include "prune/consensus/objective/log_prior.hpp"
 #include "prune/consensus/objective/own_frames.hpp"
 
 namespace isotherm::slam::detail {
-namespace {
-
-// log of the probability that exactly `kept` given ones of `all` loops are true.
-double log_beta_binomial(double kept, double all) {
-  return std::lgamma(kept + 1.0) + std::lgamma(all - kept + 1.0) - std::lgamma(all + 2.0);
-}
-
-}  // namespace
-
 template <class Pose>
 Objective<Pose>::Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles, Index window,
                            bool calibrate)
@@ -79,11 +71,11 @@ double Objective<Pose>::evidence(const Explanation<Pose>& explanation,
                                  const NearByClass& near) const {
   const CovarianceScale& scale = explanation.scale;
   double alternatives = 0.0;
-  double kept = 0.0;
+  std::size_t kept = 0;
   for (std::size_t k = 0; k < explanation.accepted.size(); ++k) {
     if (!explanation.accepted[k]) continue;
     alternatives += log_alternative(static_cast<Index>(k), near, scale.loops);
-    kept += 1.0;
+    ++kept;
   }
   const auto steps = static_cast<double>(graph.reduced.steps.size());
   const double log_information =
@@ -92,8 +84,7 @@ double Objective<Pose>::evidence(const Explanation<Pose>& explanation,
   return loops_fit(explanation, graph, estimate) - 0.5 * estimate.odometry_cost() / scale.odometry -
          0.5 * (estimate.log_determinant() - log_information) +
          joined * (0.5 * Pose::kDof * kLog2Pi - log_volume_) - alternatives +
-         log_beta_binomial(kept, static_cast<double>(explanation.accepted.size())) +
-         log_scale_peak(explanation);
+         log_prior(kept, explanation.accepted.size()) + log_scale_peak(explanation);
 }
 
 // log of the prior at the scales times the width of the peak there.
