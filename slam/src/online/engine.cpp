@@ -253,7 +253,7 @@ void OnlineEngine<Pose>::consider(Index edge) {
 template <class Pose>
 void OnlineEngine<Pose>::judge_run(Index edge) {
   const auto run = runs_.log_odds(edge);
-  const bool many = static_cast<std::size_t>(loops_) >= kFewLoops;
+  const bool refuting = can_refute(map_->best().accepted);
   for (const auto& [k, log_odds] : run) {
     const auto& told = log_.edges()[k];
     const auto& standing = standings_.at(k);
@@ -262,7 +262,7 @@ void OnlineEngine<Pose>::judge_run(Index edge) {
     spectral::EdgeVerdict row{.edge = k, .from = told.from, .to = told.to};
     row.score = -log_odds;
     row.threshold = log_odds_of(1.0 - options_.consensus.significance);
-    row.verdict = verdict_of(accepted, log_odds, row.threshold, many && standing.connected());
+    row.verdict = verdict_of(accepted, log_odds, row.threshold, refuting && standing.connected());
     row.probability = probability_of(log_odds);
     row.stage = stage_of(accepted, standing.connected());
     auto reason =
@@ -392,8 +392,7 @@ void OnlineEngine<Pose>::bring_up_to_date(PoseGraph<Pose>& graph) const {
   const auto& best = map_->best();
   const Accuracy<Pose> accuracy{best.scale.odometry * best.shapes.odometry,
                                 best.scale.loops * best.shapes.loops};
-  settle_poses(graph, steps, used, accuracy,
-               finished_ ? Judged::together : Judged::when_they_came);
+  settle_poses(graph, steps, used, accuracy, finished_ ? Judged::together : Judged::when_they_came);
 }
 
 // Vertices that the map has not follow odometry.

@@ -27,7 +27,7 @@ inline constexpr double kLoopsBefore = 1.0;
 /// Deviations to which the kernel of near pairs reaches: beyond, it is below .003 of its peak.
 inline constexpr double kReach = 3.5;
 
-/// Fewer loops say too little of how accurate odometry is for one of them to be pruned.
+/// Fewer true loops say too little of how accurate odometry is for another to be pruned.
 inline constexpr std::size_t kFewLoops = 5;
 
 // The search.

@@ -181,6 +181,20 @@ TEST(Consensus, PrunesNoneOfAFewLoops) {
   EXPECT_EQ(count(result.verdicts, Verdict::prune), 0);
 }
 
+// Nothing says how accurate odometry is against which they are held.
+TEST(Consensus, PrunesNoneWhereNoneIsFoundTrue) {
+  auto city = simulate_city({.poses = 300, .measurements = {.loops = 40}, .seed = 5});
+  const EdgeRoles roles = edge_roles(city.graph);
+  Random random(5);
+  for (const Index k : roles.candidates) {
+    city.graph.constraints[k].T_from_to =
+        Pose2(random.normal(0.0, 20.0), random.normal(0.0, 20.0), random.normal());
+  }
+  const auto result = consensus(city.graph, roles);
+  EXPECT_EQ(count(result.verdicts, Verdict::prune), 0);
+  EXPECT_EQ(count(result.verdicts, Verdict::ambiguous), 40);
+}
+
 TEST(Consensus, GivesTheSameResultWhateverTheOrderOfTheFile) {
   const auto city = simulate_city({.poses = 400, .measurements = {.loops = 120}, .seed = 5});
   const auto bad = corrupt(city.graph, city.truth, {.count = 100, .seed = 5});

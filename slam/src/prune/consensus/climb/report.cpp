@@ -37,6 +37,10 @@ spectral::Verdict verdict_of(bool accepted, double log_odds, double decisive, bo
                                            : spectral::Verdict::ambiguous;
 }
 
+bool can_refute(const std::vector<bool>& accepted) {
+  return std::ranges::count(accepted, true) >= static_cast<std::ptrdiff_t>(kFewLoops);
+}
+
 const char* stage_of(bool accepted, bool connected) {
   if (accepted) return "accepted";
   return connected ? "rejected" : "unconnected";
@@ -49,13 +53,13 @@ void report(const std::vector<Explanation<Pose>>& found, double significance,
   const auto& standings = best.standings;
   const auto log_odds = mean_log_odds(found);
   const double decisive = log_odds_of(1.0 - significance);
-  const bool many = standings.size() >= kFewLoops;
+  const bool refuting = can_refute(best.accepted);
   for (std::size_t k = 0; k < standings.size(); ++k) {
     auto& verdict = result.verdicts[k];
     verdict.score = -log_odds[k];
     verdict.threshold = decisive;
     verdict.verdict =
-        verdict_of(best.accepted[k], log_odds[k], decisive, many && standings[k].connected());
+        verdict_of(best.accepted[k], log_odds[k], decisive, refuting && standings[k].connected());
     verdict.stage = stage_of(best.accepted[k], standings[k].connected());
     verdict.probability = probability_of(log_odds[k]);
     result.details.push_back({.probability = verdict.probability,

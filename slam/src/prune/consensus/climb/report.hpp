@@ -12,6 +12,9 @@ namespace isotherm::slam::detail {
 /// `refutable` nothing can speak against it.
 spectral::Verdict verdict_of(bool accepted, double log_odds, double decisive, bool refutable);
 
+/// Whether so many loops are true that they and odometry can speak against others.
+bool can_refute(const std::vector<bool>& accepted);
+
 /// Where the verdict on a loop comes from: accepted, rejected or unconnected.
 const char* stage_of(bool accepted, bool connected);
 
