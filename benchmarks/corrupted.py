@@ -99,7 +99,7 @@ def page(rows):
              "[data/corrupted.csv](data/corrupted.csv). Graphs of [Do no harm](harm.md) in its",
              "variants, seed 1, with as many false loops as true ones, in groups.", "",
              "## Precision and recall of what is not pruned", "",
-             f"Cells with at least {FEW} true loops. Of fewer than {FEW} loops in all none is pruned: in",
+             f"Cells with at least {FEW} true loops. Where fewer than {FEW} are found true none is pruned: in",
              f"the other {len(few)} cells {sum(row['true pruned'] for row in few)} of "
              f"{sum(map(true_loops, few))} true loops are pruned, and of as many false ones",
              f"{sum(row['false pruned'] for row in few)}; "
