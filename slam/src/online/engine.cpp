@@ -253,7 +253,6 @@ void OnlineEngine<Pose>::consider(Index edge) {
 template <class Pose>
 void OnlineEngine<Pose>::judge_run(Index edge) {
   const auto run = runs_.log_odds(edge);
-  const bool refuting = can_refute(map_->best().accepted);
   for (const auto& [k, log_odds] : run) {
     const auto& told = log_.edges()[k];
     const auto& standing = standings_.at(k);
@@ -262,7 +261,8 @@ void OnlineEngine<Pose>::judge_run(Index edge) {
     spectral::EdgeVerdict row{.edge = k, .from = told.from, .to = told.to};
     row.score = -log_odds;
     row.threshold = log_odds_of(1.0 - options_.consensus.significance);
-    row.verdict = verdict_of(accepted, log_odds, row.threshold, refuting && standing.connected());
+    row.verdict =
+        verdict_of(accepted, log_odds, row.threshold, map_->refutes() && standing.connected());
     row.probability = probability_of(log_odds);
     row.stage = stage_of(accepted, standing.connected());
     auto reason =

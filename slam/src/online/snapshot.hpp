@@ -41,6 +41,9 @@ class Snapshot {
   /// Whether a start led higher than all the others did.
   bool surpassed() const noexcept { return surpassed_; }
 
+  /// Whether what is explained can speak against a loop (see detail::can_refute()).
+  bool refutes() const noexcept { return refutes_; }
+
   /// Only where explained().
   const Explanation<Pose>& best() const noexcept { return best_; }
   const Assessment<Pose>& assessment() const { return climb_->assessment(); }
@@ -76,6 +79,7 @@ class Snapshot {
   Explanation<Pose> best_;
   bool found_ = false;
   bool surpassed_ = false;
+  bool refutes_ = false;
   double work_ = 0.0;
   SearchWork search_work_;
   std::size_t nearness_of_ = 0;  // edges of the graph that the density of near pairs is of
