@@ -176,8 +176,7 @@ double Outlook<Pose>::log_alternative(Index edge) const {
   const Place b = place(to).value_or(nowhere);
   const Index apart = std::abs((a.position + a.steps) - (b.position + b.steps));
   const std::size_t group = a.chain == b.chain ? span_class(apart) : kSpanClasses;
-  const Pose forward = from <= to ? measured.T_from_to : measured.T_from_to.inverse();
-  return found.near[group] + map_.objective().nearness().log_false_density(forward);
+  return found.near[group];
 }
 
 // Its place among the loops of the snapshot, if that judged it.

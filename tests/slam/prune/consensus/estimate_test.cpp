@@ -106,6 +106,53 @@ TYPED_TEST(EstimateOf, DrawsTheMapAnewWhateverThePosesWere) {
   }
 }
 
+TYPED_TEST(EstimateOf, DrawsMapsOfTheCovarianceThatPosesHave) {
+  using Pose = TypeParam;
+  using Matrix = typename Pose::Matrix;
+  constexpr std::uint64_t kDraws = 4000;
+  Random random(18);
+  const auto made = random_loop_graph<Pose>(random, 30, 4, 1.0, 1e6);
+  const auto reduced = reduce(made.graph, edge_roles(made.graph));
+  Estimate<Pose> estimate(reduced);
+  std::vector<bool> accepted(reduced.loops.size(), true);
+  accepted[2] = false;
+  const CovarianceScale scale{3.0, 0.5};
+  estimate.update(accepted, scale, 10);
+  const auto& loop = reduced.loops[2];
+  const auto& poses = estimate.poses();
+  const Pose expected = poses[loop.a].inverse() * poses[loop.b];
+  Matrix drawn = Matrix::Zero();
+  for (std::uint64_t seed = 0; seed < kDraws; ++seed) {
+    const auto map = estimate.drawn(scale, seed);
+    const auto off = (expected.inverse() * (map[loop.a].inverse() * map[loop.b])).log().eval();
+    drawn += off * off.transpose() / static_cast<double>(kDraws);
+  }
+  const std::vector<const Link<Pose>*> link = {&loop};
+  const auto J = residual_jacobian<Pose>(estimate.residual(loop));
+  const Matrix known =
+      J.inverse() * estimate.residual_covariances(link)[0] * J.inverse().transpose();
+  EXPECT_LT((drawn - known).norm(), 0.1 * known.norm());
+}
+
+// What one loop says is all that is new, whichever loops there are.
+TYPED_TEST(EstimateOf, DrawsMapsThatChangeLittleWithALoop) {
+  using Pose = TypeParam;
+  Random random(19);
+  const auto made = random_loop_graph<Pose>(random, 60, 20, 1.0, 1e6);
+  auto reduced = reduce(made.graph, edge_roles(made.graph));
+  reduced.loops[3].information *= 1e-9;
+  Estimate<Pose> estimate(reduced);
+  std::vector<bool> accepted(reduced.loops.size(), true);
+  estimate.update(accepted, {}, 10);
+  const auto with = estimate.drawn({}, 7);
+  accepted[3] = false;
+  estimate.update(accepted, {}, 10);
+  const auto without = estimate.drawn({}, 7);
+  for (std::size_t v = 0; v < with.size(); ++v) {
+    EXPECT_LT((without[v].inverse() * with[v]).log().norm(), 1e-4);
+  }
+}
+
 TYPED_TEST(EstimateOf, CovariancesAreThoseOfTheWholeGraph) {
   using Pose = TypeParam;
   Random random(12);

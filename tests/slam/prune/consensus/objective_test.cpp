@@ -73,7 +73,7 @@ double evidence_of(const Objective<Pose>& objective, Estimate<Pose>& estimate,
                    Explanation<Pose>& explanation) {
   estimate.update(explanation.accepted, explanation.scale, 10);
   return objective.evidence(explanation, objective.stated(), estimate,
-                            objective.near(estimate.poses()));
+                            objective.near({estimate.poses()}));
 }
 
 TYPED_TEST(ObjectiveOf, IsTheMarginalLikelihoodOfTheLoops) {
@@ -92,7 +92,7 @@ TYPED_TEST(ObjectiveOf, IsTheMarginalLikelihoodOfTheLoops) {
     all.accepted.assign(loops, true);
     const double without = evidence_of(objective, estimate, none);
     const double with = evidence_of(objective, estimate, all);
-    const auto near = objective.near(estimate.poses());
+    const auto near = objective.near({estimate.poses()});
     double alternatives = 0.0;
     for (std::size_t k = 0; k < loops; ++k) {
       alternatives += objective.log_alternative(static_cast<Index>(k), near, scale.loops);
@@ -130,7 +130,7 @@ TYPED_TEST(ObjectiveOf, RisesByWhatALoopGains) {
   const double gain = loop_gain<Pose>(others, own, as_most).log_density;
   EXPECT_NEAR(loop_gain<Pose>(held_out, own, as_most).log_density, gain, 0.05);
 
-  const auto near = objective.near(estimate.poses());
+  const auto near = objective.near({estimate.poses()});
   // All of n against a given n - 1 of n by the Beta-binomial: n to 1.
   const double prior = std::log(static_cast<double>(loops));
   EXPECT_NEAR(with - without, gain - objective.log_alternative(0, near, 1.0) + prior, 0.3)
@@ -206,13 +206,30 @@ TYPED_TEST(ObjectiveOf, HoldsLoopsAgainstADensity) {
   const auto in_other_units = reduce(larger, edge_roles(larger));
   const NearDensity<Pose> near(reduced);
   const NearDensity<Pose> scaled(in_other_units);
-  const auto mean = near.log_mean(reduced.poses);
-  const auto scaled_mean = scaled.log_mean(in_other_units.poses);
-  for (std::size_t c = 0; c < kProposalClasses; ++c) EXPECT_NEAR(scaled_mean[c], mean[c], 1e-6);
-  for (std::size_t k = 0; k < reduced.loops.size(); ++k) {
-    EXPECT_NEAR(scaled.log_false_density(in_other_units.loops[k].T_a_b),
-                near.log_false_density(reduced.loops[k].T_a_b) - Pose::kDim * std::log(kUnits),
-                1e-6);
+  const auto mean = near.log_mean({reduced.poses});
+  const auto scaled_mean = scaled.log_mean({in_other_units.poses});
+  for (std::size_t c = 0; c < kProposalClasses; ++c) {
+    EXPECT_NEAR(scaled_mean[c], mean[c] - Pose::kDim * std::log(kUnits), 1e-6);
+  }
+}
+
+// However many maps there are, each pair is looked at once, and weighs as much on each.
+TYPED_TEST(ObjectiveOf, CountsNearPairsOverMaps) {
+  using Pose = TypeParam;
+  Random random(12);
+  const auto made = random_loop_graph<Pose>(random, 200, 30, 1.0);
+  const auto reduced = reduce(made.graph, edge_roles(made.graph));
+  const NearDensity<Pose> near(reduced);
+  std::vector<Pose> point = reduced.poses;
+  for (Pose& pose : point) pose = Pose();
+  const auto one = near.log_mean({reduced.poses});
+  const auto same = near.log_mean({reduced.poses, reduced.poses, reduced.poses});
+  const auto shrunk = near.log_mean({point});
+  const auto mixed = near.log_mean({reduced.poses, point});
+  for (std::size_t c = 0; c < kProposalClasses; ++c) {
+    EXPECT_NEAR(same[c], one[c], 1e-12);
+    EXPECT_GE(mixed[c], std::min(one[c], shrunk[c]) - 0.2);
+    EXPECT_LE(mixed[c], std::max(one[c], shrunk[c]) + 0.2);
   }
 }
 
@@ -229,8 +246,8 @@ TYPED_TEST(ObjectiveOf, FindsPairsNearerOnASmallerMap) {
     away[0] = 1000.0 * static_cast<double>(v);
     scattered[v] = Pose::exp(away) * scattered[v];
   }
-  const auto as_is = near.log_mean(reduced.poses);
-  const auto far = near.log_mean(scattered);
+  const auto as_is = near.log_mean({reduced.poses});
+  const auto far = near.log_mean({scattered});
   const std::size_t longest = proposal_class(reduced, 0);
   EXPECT_GT(as_is[longest], far[longest]);
 }

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include <Eigen/Cholesky>
+
 #include "isotherm/base/error.hpp"
+#include "isotherm/base/random.hpp"
 #include "isotherm/slam/optimize/initialize.hpp"
 #include "isotherm/spectral/sparse/block_covariance.hpp"
 #include "isotherm/spectral/sparse/covariance_work.hpp"
@@ -236,6 +239,43 @@ typename Pose::Tangent Estimate<Pose>::residual(const Link<Pose>& link) const {
   if (a >= 0) r += by_a * move_.template segment<Pose::kDof>(a * Pose::kDof);
   if (b >= 0) r += by_b * move_.template segment<Pose::kDof>(b * Pose::kDof);
   return r;
+}
+
+// To that of the cost: what a link adds whose residual is off by `error`, in its own deviations.
+template <class Pose>
+void Estimate<Pose>::add_error(const Link<Pose>& link, const Matrix& information,
+                               const Tangent& error, Eigen::VectorXd& gradient) const {
+  const auto [r, by_a, by_b] = derivative(link);
+  const Tangent u = Eigen::LLT<Matrix>(information).matrixL() * error;
+  const Index a = equations_->gauge().variable[link.a];
+  const Index b = equations_->gauge().variable[link.b];
+  if (a >= 0) gradient.template segment<Pose::kDof>(a * Pose::kDof) += by_a.transpose() * u;
+  if (b >= 0) gradient.template segment<Pose::kDof>(b * Pose::kDof) += by_b.transpose() * u;
+}
+
+// Where least squares would be had every link another error: those solutions have the covariance
+// of the poses (Papandreou and Yuille, Perturb-and-MAP random fields, ICCV 2011).
+template <class Pose>
+std::vector<Pose> Estimate<Pose>::drawn(const CovarianceScale& scale, std::uint64_t seed) const {
+  Random random(seed);
+  const auto error = [&random] {
+    Tangent e;
+    for (int d = 0; d < Pose::kDof; ++d) e[d] = random.normal();
+    return e;
+  };
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(move_.size());
+  for (const auto& step : graph_->steps) {
+    add_error(step, step.information / scale.odometry, error(), gradient);
+  }
+  std::size_t used = 0;
+  for (std::size_t k = 0; k < graph_->loops.size(); ++k) {
+    const Tangent of_loop = error();
+    if (used == used_loops_.size() || used_loops_[used] != static_cast<Index>(k)) continue;
+    add_error(graph_->loops[k], loop_information(used++, scale), of_loop, gradient);
+  }
+  std::vector<Pose> poses = poses_;
+  equations_->retract(equations_->hessian().solve(gradient), poses);
+  return poses;
 }
 
 template <class Pose>

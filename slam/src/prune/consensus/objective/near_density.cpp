@@ -10,7 +10,6 @@
 #include "isotherm/base/statistics.hpp"
 #include "prune/consensus/constants.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
-#include "prune/consensus/objective/log_sum.hpp"
 #include "prune/consensus/pairs/loop_pair.hpp"
 
 namespace isotherm::slam::detail {
@@ -84,17 +83,6 @@ void NearDensity<Pose>::fit(const ReducedGraph<Pose>& graph) {
   reach_ += center_.norm();
 }
 
-// f is normal around the median or has the shape of k, with even odds: measurements are often
-// much alike, those of false loops above all, and some are not.
-template <class Pose>
-double NearDensity<Pose>::log_false_density(const Pose& measured) const {
-  const Tangent wide = offset(measured);
-  const double nearer = wide.squaredNorm() - wide.cwiseProduct(narrower_).squaredNorm();
-  const double more = narrower_.array().log().sum() + 0.5 * nearer;  // log of normal over wide
-  return inverse_deviation_.array().log().sum() - 0.5 * Pose::kDof * kLog2Pi - std::log(2.0) +
-         log_sum(more, 0.0);
-}
-
 template <class Pose>
 void NearDensity<Pose>::find_places(const ReducedGraph<Pose>& graph) {
   const Index count = graph.odometry.vertex_count();
@@ -120,7 +108,7 @@ void NearDensity<Pose>::find_places(const ReducedGraph<Pose>& graph) {
   }
 }
 
-// In units of the deviations of k.
+// In units of the wider deviations.
 template <class Pose>
 typename Pose::Tangent NearDensity<Pose>::offset(const Pose& T) const {
   Tangent d = (center_inverse_ * T).log();
@@ -128,29 +116,38 @@ typename Pose::Tangent NearDensity<Pose>::offset(const Pose& T) const {
   return d.cwiseProduct(inverse_deviation_);
 }
 
-// Poses near each other are rare on a large map: they are looked for, not drawn. As if half a
-// pair more lay at the peak: so much is known where there is none.
+// f over that of the wider normal distribution at its peak.
 template <class Pose>
-std::array<double, kProposalClasses> NearDensity<Pose>::log_mean(
-    const std::vector<Pose>& poses) const {
-  using Points = Eigen::Matrix<double, Eigen::Dynamic, Pose::kDim>;
+double NearDensity<Pose>::shape(const Tangent& offset) const {
+  return 0.5 * (std::exp(-0.5 * offset.squaredNorm()) +
+                narrower_.prod() * std::exp(-0.5 * offset.cwiseProduct(narrower_).squaredNorm()));
+}
+
+template <class Pose>
+std::vector<Pose> NearDensity<Pose>::places_on(const std::vector<Pose>& map) const {
   std::vector<Pose> at;
   at.reserve(places_.size());
-  Points points(static_cast<Eigen::Index>(places_.size()), Pose::kDim);
-  for (const auto& place : places_) {
-    at.push_back(poses[place.node] * place.T_node_vertex);
-    points.row(static_cast<Eigen::Index>(at.size()) - 1) = at.back().translation();
+  for (const auto& place : places_) at.push_back(map[place.node] * place.T_node_vertex);
+  return at;
+}
+
+// Poses near each other are rare on a large map: they are looked for, not drawn. Of the anchors
+// every `stride`th, from the first.
+template <class Pose>
+void NearDensity<Pose>::count_near(const std::vector<Pose>& at, std::size_t first,
+                                   std::size_t stride, Count& count) const {
+  using Points = Eigen::Matrix<double, Eigen::Dynamic, Pose::kDim>;
+  Points points(static_cast<Eigen::Index>(at.size()), Pose::kDim);
+  for (std::size_t p = 0; p < at.size(); ++p) {
+    points.row(static_cast<Eigen::Index>(p)) = at[p].translation();
   }
   const nanoflann::KDTreeEigenMatrixAdaptor<Points> tree(Pose::kDim, points);
-  std::array<double, kProposalClasses> inside;
-  inside.fill(0.5);
-  std::array<double, kProposalClasses> pairs;
-  pairs.fill(1.0);
   const nanoflann::SearchParams unsorted(0, 0.0F, false);
   std::vector<std::pair<Eigen::Index, double>> near;
   std::size_t weighed = 0;
-  for (const std::size_t a : anchors_) {
-    if (weighed > kMostWeighed) break;
+  for (std::size_t next = first; next < anchors_.size(); next += stride) {
+    if (weighed > kMostWeighed / stride) break;
+    const std::size_t a = anchors_[next];
     const typename Pose::Translation point = at[a].translation();
     tree.index->radiusSearch(point.data(), reach_ * reach_, near, unsorted);
     weighed += near.size();
@@ -158,14 +155,27 @@ std::array<double, kProposalClasses> NearDensity<Pose>::log_mean(
       const auto b = static_cast<std::size_t>(found);
       if (b == a) continue;
       const auto [from, to] = std::minmax(a, b);
-      inside[class_of(from, to)] +=
-          std::exp(-0.5 * offset(at[from].inverse() * at[to]).squaredNorm());
+      count.near[class_of(from, to)] += shape(offset(at[from].inverse() * at[to]));
     }
-    count_pairs(a, pairs);
+    count_pairs(a, count.pairs);
   }
+}
+
+// Of each map other anchors. As if half a pair more lay at the peak: so much is known where there
+// is none.
+template <class Pose>
+std::array<double, kProposalClasses> NearDensity<Pose>::log_mean(
+    const std::vector<std::vector<Pose>>& maps) const {
+  Count count;
+  count.near.fill(0.5 * shape(Tangent::Zero()));
+  count.pairs.fill(1.0);
+  for (std::size_t m = 0; m < maps.size(); ++m) {
+    count_near(places_on(maps[m]), m, maps.size(), count);
+  }
+  const double log_peak = inverse_deviation_.array().log().sum() - 0.5 * Pose::kDof * kLog2Pi;
   std::array<double, kProposalClasses> result;
   for (std::size_t c = 0; c < kProposalClasses; ++c) {
-    result[c] = std::log(inside[c] / pairs[c]);
+    result[c] = log_peak + std::log(count.near[c] / count.pairs[c]);
   }
   return result;
 }

@@ -20,26 +20,27 @@ std::size_t proposal_class(const ReducedGraph<Pose>& graph, Index loop) {
 ///
 /// A front end proposes pairs of poses that look near. A false loop joins any pair and measures
 /// z with the density f of what loops measure; a true one joins a pair that is near on the map,
-/// with probability in proportion to a kernel k of their relative pose h, so that the odds of
-/// true against false are N(z; h, S) k(h) / (f(z) k_mean): k_mean is the mean of k over random
-/// pairs of poses that span about as many vertices, on the map in question. On a map shrunk to
-/// a point every pair is near, and no loop proves anything. Since h is near z, k(z) stands for
-/// k(h).
+/// with probability in proportion to f(h) of their relative pose h, so that the odds of true
+/// against false are N(z; h, S) f(h) / (f(z) f_mean): f_mean is the mean of f over random pairs
+/// of poses that span about as many vertices, on the map in question. On a map shrunk to a point
+/// every pair is near, and no loop proves anything. Since h is near z, f(h) / f(z) is 1.
+///
+/// f is normal around the median, with even odds as wide as loops differ (they are often much
+/// alike, those of false loops above all) or wider by a step of odometry: the nearest pose to one
+/// is up to that far away.
 template <class Pose>
 class NearDensity {
  public:
   /// Draws the pairs; the same for every map. `graph` must have loops and outlive this object.
   explicit NearDensity(const ReducedGraph<Pose>& graph);
 
-  /// log k_mean of each proposal class, with the graph's nodes at `poses`.
-  std::array<double, kProposalClasses> log_mean(const std::vector<Pose>& poses) const;
-
-  using Tangent = typename Pose::Tangent;
-
-  /// log f(z) / k(z) of a loop's measurement z, from the earlier to the later pose.
-  double log_false_density(const Pose& measured) const;
+  /// log f_mean of each proposal class, over maps that are as likely: the graph's nodes are at
+  /// their poses.
+  std::array<double, kProposalClasses> log_mean(const std::vector<std::vector<Pose>>& maps) const;
 
  private:
+  using Tangent = typename Pose::Tangent;
+
   /// A vertex of the full graph, as odometry ties it to a node.
   struct Place {
     Index vertex = 0;
@@ -47,21 +48,31 @@ class NearDensity {
     Pose T_node_vertex;
   };
 
+  /// Of each class of pairs: shape() summed over those that are near, and how many there are.
+  struct Count {
+    std::array<double, kProposalClasses> near{};
+    std::array<double, kProposalClasses> pairs{};
+  };
+
   void fit(const ReducedGraph<Pose>& graph);
   void find_places(const ReducedGraph<Pose>& graph);
   Tangent offset(const Pose& T) const;
   std::size_t class_of(std::size_t from, std::size_t to) const;
   void count_pairs(std::size_t anchor, std::array<double, kProposalClasses>& pairs) const;
+  double shape(const Tangent& offset) const;
+  std::vector<Pose> places_on(const std::vector<Pose>& map) const;
+  void count_near(const std::vector<Pose>& at, std::size_t first, std::size_t stride,
+                  Count& count) const;
 
   Pose center_inverse_;
   typename Pose::Translation center_;
-  Tangent inverse_deviation_;
-  Tangent narrower_;  // of k: times the deviation of what loops measure
+  Tangent inverse_deviation_;  // of the wider
+  Tangent narrower_;           // times the deviation of the other
   std::vector<Place> places_;
   std::vector<Index> chain_;          // of each place
   std::vector<std::size_t> anchors_;  // places in random order
   double stride_ = 1.0;               // vertices from place to place
-  double reach_ = 0.0;                // beyond it k is nothing
+  double reach_ = 0.0;                // beyond it f is nothing
 };
 
 extern template class NearDensity<Pose2>;

@@ -24,9 +24,6 @@ Objective<Pose>::Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
       calibrate_(calibrate) {
   const MapVolume<Pose> map(stated_.reduced.poses);
   log_volume_ = 0.5 * (map.variance().array().log().sum() + Pose::kDof * kLog2Pi);
-  for (const auto& loop : forward_loops(stated_.reduced, {})) {
-    log_false_density_.push_back(near_.log_false_density(loop.measured.T));
-  }
   for (const auto& loop : stated_.reduced.loops) {
     log_sigma_.push_back(log_determinant(Eigen::LLT<typename Pose::Matrix>(loop.covariance)));
   }
@@ -42,9 +39,7 @@ Objective<Pose> Objective<Pose>::of(const std::vector<Index>& loops) const {
 template <class Pose>
 double Objective<Pose>::log_alternative(Index loop, const NearByClass& near,
                                         double loop_scale) const {
-  if (!runs_.copied(loop)) {
-    return near[proposal_class(stated_.reduced, loop)] + log_false_density_[loop];
-  }
+  if (!runs_.copied(loop)) return near[proposal_class(stated_.reduced, loop)];
   return log_copy_density<Pose>(log_sigma_[loop] + Pose::kDof * std::log(loop_scale));
 }
 

@@ -48,12 +48,12 @@ struct Explanation {
 
 /// The log evidence of an explanation: of the accepted set A and the scales,
 ///
-///     log p(z_A, odometry | scales) - sum over A of log (f k_mean / k)
+///     log p(z_A, odometry | scales) - sum over A of log f_mean
 ///         + log pi(A) + log pi(scales)
 ///
 /// with p by Laplace's approximation from the factor that the estimate holds, without what does not
 /// depend on A and the scales (of odometry without cycles that is all of its own: p is that of z_A
-/// given odometry), f and k as in
+/// given odometry), f_mean as in
 /// NearDensity, pi(A) the Beta-binomial of a fraction of which nothing is known. The scales are
 /// log-normal around what the file states (scale_prior.hpp) and integrated over by Laplace's
 /// approximation. Which loops are as accurate as most and which less (ScaleShares) is integrated
@@ -89,16 +89,15 @@ class Objective {
            stated * stated_.reduced.loops[loop].information;
   }
 
-  /// log k_mean of each class of loops on the map with nodes at `poses`.
-  NearByClass near(const std::vector<Pose>& poses) const { return near_.log_mean(poses); }
+  /// See NearDensity::log_mean().
+  NearByClass near(const std::vector<std::vector<Pose>>& maps) const {
+    return near_.log_mean(maps);
+  }
 
   /// The density that a loop's is held against: that of loops near by chance; for one that
   /// copies the measurement of the one before it in its run, that of a copy, so that a group
   /// of copies counts as one draw.
   double log_alternative(Index loop, const NearByClass& near, double loop_scale) const;
-
-  /// How easily poses are near each other, for loops that are not among the graph's.
-  const NearDensity<Pose>& nearness() const noexcept { return near_; }
 
   /// Of the logs of the factors on covariances that measurements of this redundancy tell.
   CovarianceScale scale_deviation(const Redundancy<Pose>& redundancy) const {
@@ -139,7 +138,6 @@ class Objective {
   bool calibrate_;
   double log_volume_;
   std::vector<double> log_sigma_;  // log|Sigma| of each loop
-  std::vector<double> log_false_density_;
 };
 
 extern template class Objective<Pose2>;
