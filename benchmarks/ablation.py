@@ -53,7 +53,6 @@ CONSTANTS = [
     Constant("kPatience", "8", "moves that may find nothing better", (3, 20)),
     Constant("kMoreTelling", "2", "times as many loops tell scales anew", (1, 1000)),
     Constant("kMostExpectedFalse", "0.5", "loops of a batch that may be expected false", (0.1, 5)),
-    Constant("kFalseShare", "1e-3", "the same as a share of those in force", (0, 1e-2)),
     Constant("kBatchGrowth", "10", "times as many loops as before in a batch", (3, 100)),
     Constant("kSettled", "0.01", "deviations below which a step of poses does not matter",
              (0.001, 0.1)),

@@ -52,11 +52,8 @@ inline constexpr int kPatience = 8;
 /// Times as many loops as at the last lesson have more to tell of how accurate they are.
 inline constexpr std::size_t kMoreTelling = 2;
 
-/// Groups accepted at once are all true with even odds at least,
+/// Groups accepted at once are all true with even odds at least.
 inline constexpr double kMostExpectedFalse = 0.5;
-/// or false as rarely as one in so many of those in force, of which each move drops what does not
-/// fit: where hundreds are near even odds, they are not taken one by one.
-inline constexpr double kFalseShare = 1e-3;
 
 /// Times as many loops as before that are accepted at once: each sharpens what is predicted of the
 /// rest and tells how accurate they are.

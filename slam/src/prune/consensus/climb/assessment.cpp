@@ -16,7 +16,7 @@ constexpr int kMostSteps = 12;  // of Gauss-Newton, weights included
 constexpr int kFixedPointSteps = 30;
 
 // Maps on which near pairs are counted.
-constexpr std::uint64_t kMaps = 4;
+constexpr std::uint64_t kMaps = 2;
 
 // Covariances, in times of a factorisation (measured).
 constexpr double kCovarianceWork = 2.0;

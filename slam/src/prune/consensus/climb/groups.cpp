@@ -81,13 +81,11 @@ Group most_certain(std::vector<Group> groups, std::size_t accepted) {
   Group all;
   std::vector<Index> part = numbered_parts(groups);
   double expected_false = 0.0;
-  const double most_false =
-      std::max(kMostExpectedFalse, kFalseShare * static_cast<double>(accepted));
   for (const auto& [members, gain, evidence, parts] : groups) {
     expected_false += probability_of(-gain);
     const bool many =
         all.loops.size() + members.size() > kBatchGrowth * std::max<std::size_t>(accepted, 1);
-    if (!all.loops.empty() && (many || expected_false > most_false)) break;
+    if (!all.loops.empty() && (many || expected_false > kMostExpectedFalse)) break;
     if (parts.first != parts.second) {
       const Index first = find_root(part, parts.first);
       const Index second = find_root(part, parts.second);

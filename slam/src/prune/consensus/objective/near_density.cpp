@@ -10,6 +10,7 @@
 #include "isotherm/base/statistics.hpp"
 #include "prune/consensus/constants.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
+#include "prune/consensus/objective/log_sum.hpp"
 #include "prune/consensus/pairs/loop_pair.hpp"
 
 namespace isotherm::slam::detail {
@@ -40,6 +41,35 @@ typename Pose::Tangent median_step(const OdometryChain<Pose>& odometry) {
 
 }  // namespace
 
+// Where places are on a map.
+template <class Pose>
+struct NearDensity<Pose>::Places {
+  using Points = Eigen::Matrix<double, Eigen::Dynamic, Pose::kDim>;
+
+  Places(const std::vector<Place>& places, const std::vector<Pose>& map)
+      : poses(poses_of(places, map)), points(points_of(poses)), tree(Pose::kDim, points) {}
+
+  static std::vector<Pose> poses_of(const std::vector<Place>& places,
+                                    const std::vector<Pose>& map) {
+    std::vector<Pose> poses;
+    poses.reserve(places.size());
+    for (const auto& place : places) poses.push_back(map[place.node] * place.T_node_vertex);
+    return poses;
+  }
+
+  static Points points_of(const std::vector<Pose>& poses) {
+    Points points(static_cast<Eigen::Index>(poses.size()), Pose::kDim);
+    for (std::size_t p = 0; p < poses.size(); ++p) {
+      points.row(static_cast<Eigen::Index>(p)) = poses[p].translation();
+    }
+    return points;
+  }
+
+  std::vector<Pose> poses;
+  Points points;
+  nanoflann::KDTreeEigenMatrixAdaptor<Points> tree;
+};
+
 template <class Pose>
 NearDensity<Pose>::NearDensity(const ReducedGraph<Pose>& graph) {
   fit(graph);
@@ -67,20 +97,16 @@ void NearDensity<Pose>::fit(const ReducedGraph<Pose>& graph) {
     turn[d] = median_over([d](const auto& m) { return m.T.log()[d]; });
   }
   center_inverse_ = Pose::exp(turn).inverse();
-  inverse_deviation_.setOnes();  // until each is known
-  reach_ = 0.0;
+  auto& [alike, near] = kernels_;
   for (int d = 0; d < Pose::kDof; ++d) {
     const double mad = median_over([&](const auto& m) { return std::abs(offset(m.T)[d]); });
     const auto count = static_cast<double>(loops.size());
-    const double alike =
+    const double square =
         (count * kDeviationOfMad * mad * kDeviationOfMad * mad + step[d]) / (count + 1.0) +
         median_over([d](const auto& m) { return m.covariance(d, d); });
-    const double near = std::sqrt(alike + step[d]);
-    inverse_deviation_[d] = 1.0 / near;
-    narrower_[d] = near / std::sqrt(alike);
-    if (d < Pose::kDim) reach_ = std::max(reach_, kReach * near);
+    alike.deviation[d] = std::sqrt(square);
+    near.deviation[d] = std::sqrt(square + step[d]);
   }
-  reach_ += center_.norm();
 }
 
 template <class Pose>
@@ -108,74 +134,67 @@ void NearDensity<Pose>::find_places(const ReducedGraph<Pose>& graph) {
   }
 }
 
-// In units of the wider deviations.
+// From the median.
 template <class Pose>
 typename Pose::Tangent NearDensity<Pose>::offset(const Pose& T) const {
   Tangent d = (center_inverse_ * T).log();
   d.template head<Pose::kDim>() = T.translation() - center_;
-  return d.cwiseProduct(inverse_deviation_);
-}
-
-// f over that of the wider normal distribution at its peak.
-template <class Pose>
-double NearDensity<Pose>::shape(const Tangent& offset) const {
-  return 0.5 * (std::exp(-0.5 * offset.squaredNorm()) +
-                narrower_.prod() * std::exp(-0.5 * offset.cwiseProduct(narrower_).squaredNorm()));
+  return d;
 }
 
 template <class Pose>
-std::vector<Pose> NearDensity<Pose>::places_on(const std::vector<Pose>& map) const {
-  std::vector<Pose> at;
-  at.reserve(places_.size());
-  for (const auto& place : places_) at.push_back(map[place.node] * place.T_node_vertex);
-  return at;
+double NearDensity<Pose>::Kernel::log_peak() const {
+  return -deviation.array().log().sum() - 0.5 * Pose::kDof * kLog2Pi;
 }
 
-// Poses near each other are rare on a large map: they are looked for, not drawn. Of the anchors
-// every `stride`th, from the first.
+// Poses near each other are rare on a large map: they are looked for, not drawn, from every
+// `stride`th anchor to later places.
 template <class Pose>
-void NearDensity<Pose>::count_near(const std::vector<Pose>& at, std::size_t first,
+void NearDensity<Pose>::count_near(const Kernel& kernel, const Places& on, std::size_t first,
                                    std::size_t stride, Count& count) const {
-  using Points = Eigen::Matrix<double, Eigen::Dynamic, Pose::kDim>;
-  Points points(static_cast<Eigen::Index>(at.size()), Pose::kDim);
-  for (std::size_t p = 0; p < at.size(); ++p) {
-    points.row(static_cast<Eigen::Index>(p)) = at[p].translation();
-  }
-  const nanoflann::KDTreeEigenMatrixAdaptor<Points> tree(Pose::kDim, points);
+  const double reach = kReach * kernel.deviation.template head<Pose::kDim>().maxCoeff();
   const nanoflann::SearchParams unsorted(0, 0.0F, false);
   std::vector<std::pair<Eigen::Index, double>> near;
   std::size_t weighed = 0;
   for (std::size_t next = first; next < anchors_.size(); next += stride) {
     if (weighed > kMostWeighed / stride) break;
     const std::size_t a = anchors_[next];
-    const typename Pose::Translation point = at[a].translation();
-    tree.index->radiusSearch(point.data(), reach_ * reach_, near, unsorted);
+    const typename Pose::Translation middle = on.poses[a] * center_;
+    on.tree.index->radiusSearch(middle.data(), reach * reach, near, unsorted);
     weighed += near.size();
     for (const auto& [found, square] : near) {
       const auto b = static_cast<std::size_t>(found);
-      if (b == a) continue;
-      const auto [from, to] = std::minmax(a, b);
-      count.near[class_of(from, to)] += shape(offset(at[from].inverse() * at[to]));
+      if (b <= a) continue;
+      const Tangent off = offset(on.poses[a].inverse() * on.poses[b]);
+      count.near[class_of(a, b)] +=
+          std::exp(-0.5 * off.cwiseQuotient(kernel.deviation).squaredNorm());
     }
     count_pairs(a, count.pairs);
   }
 }
 
-// Of each map other anchors. As if half a pair more lay at the peak: so much is known where there
-// is none.
+// Of each map other anchors. As if half a pair more were as near as loops are (the mean of a normal
+// density under itself is its peak over the root of 2^d): so much is known where there is none.
 template <class Pose>
 std::array<double, kProposalClasses> NearDensity<Pose>::log_mean(
     const std::vector<std::vector<Pose>>& maps) const {
-  Count count;
-  count.near.fill(0.5 * shape(Tangent::Zero()));
-  count.pairs.fill(1.0);
-  for (std::size_t m = 0; m < maps.size(); ++m) {
-    count_near(places_on(maps[m]), m, maps.size(), count);
+  std::array<Count, 2> counts;
+  for (auto& [near, pairs] : counts) {
+    near.fill(0.5 * std::exp2(-0.5 * Pose::kDof));
+    pairs.fill(1.0);
   }
-  const double log_peak = inverse_deviation_.array().log().sum() - 0.5 * Pose::kDof * kLog2Pi;
+  for (std::size_t m = 0; m < maps.size(); ++m) {
+    const Places on(places_, maps[m]);
+    for (std::size_t k = 0; k < counts.size(); ++k) {
+      count_near(kernels_[k], on, m, maps.size(), counts[k]);
+    }
+  }
   std::array<double, kProposalClasses> result;
   for (std::size_t c = 0; c < kProposalClasses; ++c) {
-    result[c] = log_peak + std::log(count.near[c] / count.pairs[c]);
+    const auto log_part = [&](std::size_t k) {
+      return kernels_[k].log_peak() + std::log(counts[k].near[c] / counts[k].pairs[c]);
+    };
+    result[c] = log_sum(log_part(0), log_part(1)) - std::log(2.0);
   }
   return result;
 }
@@ -186,23 +205,19 @@ std::size_t NearDensity<Pose>::class_of(std::size_t from, std::size_t to) const 
                                     : kSpanClasses;
 }
 
-// Of each class, how many places make a pair with `anchor`.
+// Of each class, how many later places make a pair with `anchor`.
 template <class Pose>
 void NearDensity<Pose>::count_pairs(std::size_t anchor,
                                     std::array<double, kProposalClasses>& pairs) const {
-  const auto [first, last] = std::equal_range(chain_.begin(), chain_.end(), chain_[anchor]);
-  const auto begin = static_cast<double>(first - chain_.begin());
-  const auto end = static_cast<double>(last - chain_.begin());
-  pairs[kSpanClasses] += static_cast<double>(chain_.size()) - (end - begin);
-  const double before = static_cast<double>(anchor) - begin;
+  const auto end =
+      static_cast<double>(std::ranges::upper_bound(chain_, chain_[anchor]) - chain_.begin());
+  pairs[kSpanClasses] += static_cast<double>(chain_.size()) - end;
   const double after = end - 1.0 - static_cast<double>(anchor);
   for (std::size_t c = 1; c < kSpanClasses; ++c) {
     const double least = std::ldexp(1.0, static_cast<int>(c) - 1) / stride_;
     const double most = std::max(std::ldexp(1.0, static_cast<int>(c)) / stride_, least + 1.0);
-    if (least > std::max(before, after)) break;
-    for (const double side : {before, after}) {
-      pairs[c] += std::max(0.0, std::min(side + 1.0, most) - least);
-    }
+    if (least > after) break;
+    pairs[c] += std::max(0.0, std::min(after + 1.0, most) - least);
   }
 }
 

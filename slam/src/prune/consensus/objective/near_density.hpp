@@ -48,31 +48,36 @@ class NearDensity {
     Pose T_node_vertex;
   };
 
-  /// Of each class of pairs: shape() summed over those that are near, and how many there are.
-  struct Count {
-    std::array<double, kProposalClasses> near{};
-    std::array<double, kProposalClasses> pairs{};
+  /// One of the two normal distributions around the median.
+  struct Kernel {
+    Tangent deviation;
+    double log_peak() const;
   };
+
+  /// Of each class of pairs: a kernel over its peak, summed over those that are near, and how many
+  /// there are.
+  struct Count {
+    std::array<double, kProposalClasses> near;
+    std::array<double, kProposalClasses> pairs;
+  };
+
+  struct Places;
 
   void fit(const ReducedGraph<Pose>& graph);
   void find_places(const ReducedGraph<Pose>& graph);
   Tangent offset(const Pose& T) const;
   std::size_t class_of(std::size_t from, std::size_t to) const;
   void count_pairs(std::size_t anchor, std::array<double, kProposalClasses>& pairs) const;
-  double shape(const Tangent& offset) const;
-  std::vector<Pose> places_on(const std::vector<Pose>& map) const;
-  void count_near(const std::vector<Pose>& at, std::size_t first, std::size_t stride,
+  void count_near(const Kernel& kernel, const Places& on, std::size_t first, std::size_t stride,
                   Count& count) const;
 
   Pose center_inverse_;
   typename Pose::Translation center_;
-  Tangent inverse_deviation_;  // of the wider
-  Tangent narrower_;           // times the deviation of the other
+  std::array<Kernel, 2> kernels_;  // as wide as loops differ, and wider by a step
   std::vector<Place> places_;
   std::vector<Index> chain_;          // of each place
   std::vector<std::size_t> anchors_;  // places in random order
   double stride_ = 1.0;               // vertices from place to place
-  double reach_ = 0.0;                // beyond it f is nothing
 };
 
 extern template class NearDensity<Pose2>;
