@@ -77,7 +77,7 @@ def cells_section(rows, planned):
     lines = ["Made by `benchmarks/online.py`; every cell is in [data/online.csv](data/online.csv).",
              "Each graph is replayed in order of time by `isotherm follow`, one thread, clean and with",
              "false loops by `isotherm corrupt` (`--fraction` of all loops). *ms* is the CPU time of a",
-             "call, *wall* the same on the clock while other programs used the machine (load 4 to 12 on two",
+             "call, *wall* the same on the clock while other programs used the machine (load 3 to 5 on two",
              "cores); *batches* is the CPU time of it all, the end included, in runs of `isotherm prune`, and",
              "uncertain by a tenth under that load; *differ* counts final",
              "verdicts that are not the batch's. P and R are of what is kept, at the end and as the mean",

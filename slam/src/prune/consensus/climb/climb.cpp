@@ -7,6 +7,7 @@
 
 #include "isotherm/base/error.hpp"
 #include "prune/consensus/climb/groups.hpp"
+#include "prune/consensus/objective/log_odds.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -255,7 +256,7 @@ bool Climb<Pose>::has_fallen_behind() const {
 template <class Pose>
 bool Climb<Pose>::move() {
   return shift() || learn_more_than(0.0) || weigh_by_others() || weigh_otherwise() ||
-         accept_many_more(0.0);
+         accept_many_more(0.0) || accept_undecided();
 }
 
 // The same at about these scales.
@@ -325,6 +326,30 @@ bool Climb<Pose>::accept_many_more(double gain) {
     return true;
   }
   failed_[Trial::many_more] = true;
+  return false;
+}
+
+// All loops of which it is not decided whether they are true: where a part of the map is off each
+// of them speaks for itself alone, and against the map, which together they may put right.
+template <class Pose>
+bool Climb<Pose>::accept_undecided() {
+  if (failed_[Trial::undecided]) return false;
+  const double least = log_odds_of(options_.significance);
+  Selection open;
+  for (std::size_t k = 0; k < now_.standings.size(); ++k) {
+    const auto& [first, second] = now_.standings[k].parts;
+    if (!now_.accepted[k] && first == second && now_.standings[k].log_odds > least) {
+      open.push_back(static_cast<Index>(k));
+    }
+  }
+  const auto accept_them = [&](auto& now) {
+    for (const Index k : open) now.accepted[k] = true;
+  };
+  if (!open.empty() && try_with(accept_them)) {
+    note(open.size(), 0);
+    return true;
+  }
+  failed_[Trial::undecided] = true;
   return false;
 }
 

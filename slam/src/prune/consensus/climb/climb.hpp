@@ -72,7 +72,15 @@ class Climb {
   bool settled() const noexcept { return settled_; }
 
  private:
-  enum Trial { lesson, lesson_of_scales, weights_by_others, wide_loops, many_more, trials };
+  enum Trial {
+    lesson,
+    lesson_of_scales,
+    weights_by_others,
+    wide_loops,
+    many_more,
+    undecided,
+    trials
+  };
 
   using Layout = typename Estimate<Pose>::Layout;
   using Change = std::function<void(Explanation<Pose>&)>;
@@ -119,6 +127,7 @@ class Climb {
   bool weigh_by_others();
   bool weigh_otherwise();
   bool accept_many_more(double gain);
+  bool accept_undecided();
   void draw_anew();
   bool try_with(const Change& change, double gain = kBetter, const Layout* from = nullptr);
   Place place() const { return {now_, assessment_.findings(), run_density_, failed_}; }
