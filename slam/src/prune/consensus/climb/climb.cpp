@@ -329,12 +329,13 @@ bool Climb<Pose>::accept_many_more(double gain) {
   return false;
 }
 
-// All loops of which it is not decided whether they are true: where a part of the map is off each
-// of them speaks for itself alone, and against the map, which together they may put right.
+// All loops that are not false beyond doubt, by twice the log odds that a verdict takes: where a
+// part of the map is off each of them speaks for itself alone, and against the map, which together
+// they may put right.
 template <class Pose>
 bool Climb<Pose>::accept_undecided() {
   if (failed_[Trial::undecided]) return false;
-  const double least = log_odds_of(options_.significance);
+  const double least = 2.0 * log_odds_of(options_.significance);
   Selection open;
   for (std::size_t k = 0; k < now_.standings.size(); ++k) {
     const auto& [first, second] = now_.standings[k].parts;
