@@ -165,7 +165,6 @@ double Outlook<Pose>::log_alternative(Index edge) const {
     return map_.assessment().log_alternative(static_cast<Index>(*loop));
   }
   const auto& [from, to, measured, step] = log_.edges()[edge];
-  const auto& found = map_.assessment().findings();
   if (is_copied(edge)) {
     const double log_sigma = log_determinant(Eigen::LLT<Matrix>(covariance_of(measured))) +
                              Pose::kDof * std::log(map_.best().scale.loops);
@@ -176,7 +175,7 @@ double Outlook<Pose>::log_alternative(Index edge) const {
   const Place b = place(to).value_or(nowhere);
   const Index apart = std::abs((a.position + a.steps) - (b.position + b.steps));
   const std::size_t group = a.chain == b.chain ? span_class(apart) : kSpanClasses;
-  return found.near[group];
+  return map_.assessment().findings().near[group];
 }
 
 // Its place among the loops of the snapshot, if that judged it.

@@ -70,8 +70,7 @@ Pose3 make_pose(const Pose3::Tangent& coordinates) {
 // Tens of metres to kilometres, any heading.
 template <class Pose>
 Pose wild_transform(Random& random) {
-  typename Pose::Tangent coordinates;
-  for (int k = 0; k < Pose::kDof; ++k) coordinates[k] = random.normal();
+  auto coordinates = random.normal_vector<typename Pose::Tangent>();
   auto translation = coordinates.template head<Pose::kDim>();
   translation *= std::pow(10.0, random.uniform(1.0, 3.0)) / translation.norm();
   auto rotation = coordinates.template tail<Pose::kDof - Pose::kDim>();

@@ -20,13 +20,6 @@ typename Pose::Tangent sigmas(double translation, double rotation) {
 }
 
 template <class Pose>
-typename Pose::Tangent unit_noise(Random& random) {
-  typename Pose::Tangent noise;
-  for (double& entry : noise) entry = random.normal();
-  return noise;
-}
-
-template <class Pose>
 Constraint<Pose> measure(const std::vector<Pose>& truth, const LoopPair& pair,
                          const typename Pose::Tangent& unit, const typename Pose::Tangent& sigma) {
   Constraint<Pose> constraint;
@@ -100,7 +93,8 @@ Simulation<Pose> measure_path(std::vector<Pose> path, const MeasurementOptions& 
   for (std::size_t k = 0; k < truth.size(); ++k) graph.ids.push_back(k);
 
   Tangents<Pose> noise;
-  for (std::size_t k = 1; k < truth.size(); ++k) noise.push_back(unit_noise<Pose>(random));
+  for (std::size_t k = 1; k < truth.size(); ++k)
+    noise.push_back(random.normal_vector<typename Pose::Tangent>());
   auto sigma = sigmas<Pose>(options.odometry_sigma, options.odometry_turn_sigma);
   if (options.drift > 0.0) sigma *= scale_for_drift(truth, noise, sigma, options.drift);
   for (std::size_t k = 0; k < noise.size(); ++k) {
@@ -112,7 +106,8 @@ Simulation<Pose> measure_path(std::vector<Pose> path, const MeasurementOptions& 
   const auto loops =
       options.loops < 0 ? static_cast<std::int64_t>(truth.size() / 2) : options.loops;
   for (const auto& pair : loop_pairs(places(truth), loops, options.loop_radius, random)) {
-    graph.constraints.push_back(measure(truth, pair, unit_noise<Pose>(random), loop_sigma));
+    graph.constraints.push_back(
+        measure(truth, pair, random.normal_vector<typename Pose::Tangent>(), loop_sigma));
   }
   return simulation;
 }

@@ -23,6 +23,14 @@ class Random {
   /// Normal with the given mean and standard deviation (Marsaglia's polar method).
   double normal(double mean = 0.0, double sigma = 1.0);
 
+  /// A vector of fixed size whose entries are normal, of zero mean and unit deviation.
+  template <class Vector>
+  Vector normal_vector() {
+    Vector vector;
+    for (double& entry : vector) entry = normal();
+    return vector;
+  }
+
  private:
   std::mt19937_64 engine_;
   double spare_ = 0.0;

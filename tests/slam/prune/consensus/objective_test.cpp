@@ -213,12 +213,17 @@ TYPED_TEST(ObjectiveOf, HoldsLoopsAgainstADensity) {
   }
 }
 
+template <class Pose>
+ReducedGraph<Pose> graph_with_loops(std::uint64_t seed) {
+  Random random(seed);
+  const auto made = random_loop_graph<Pose>(random, 200, 30, 1.0);
+  return reduce(made.graph, edge_roles(made.graph));
+}
+
 // However many maps there are, each pair is looked at once, and weighs as much on each.
 TYPED_TEST(ObjectiveOf, CountsNearPairsOverMaps) {
   using Pose = TypeParam;
-  Random random(12);
-  const auto made = random_loop_graph<Pose>(random, 200, 30, 1.0);
-  const auto reduced = reduce(made.graph, edge_roles(made.graph));
+  const auto reduced = graph_with_loops<Pose>(12);
   const NearDensity<Pose> near(reduced);
   std::vector<Pose> point = reduced.poses;
   for (Pose& pose : point) pose = Pose();
@@ -236,9 +241,7 @@ TYPED_TEST(ObjectiveOf, CountsNearPairsOverMaps) {
 // A loop of a graph that shrinks to a point is near everything.
 TYPED_TEST(ObjectiveOf, FindsPairsNearerOnASmallerMap) {
   using Pose = TypeParam;
-  Random random(9);
-  const auto made = random_loop_graph<Pose>(random, 200, 30, 1.0);
-  const auto reduced = reduce(made.graph, edge_roles(made.graph));
+  const auto reduced = graph_with_loops<Pose>(9);
   const NearDensity<Pose> near(reduced);
   std::vector<Pose> scattered = reduced.poses;
   for (std::size_t v = 0; v < scattered.size(); ++v) {

@@ -16,7 +16,7 @@ constexpr int kMostSteps = 12;  // of Gauss-Newton, weights included
 constexpr int kFixedPointSteps = 30;
 
 // Maps on which near pairs are counted.
-constexpr std::uint64_t kMaps = 2;
+constexpr std::size_t kMaps = 2;
 
 // Covariances, in times of a factorisation (measured).
 constexpr double kCovarianceWork = 2.0;
@@ -88,11 +88,7 @@ void Assessment<Pose>::find_nearness(const Explanation<Pose>& now) {
   const auto before = found_.near_of;
   const bool same = before && !is_much_more(accepted, *before) && !is_much_more(*before, accepted);
   if (nearness_held_ && same) return;
-  std::vector<std::vector<Pose>> maps;
-  for (std::uint64_t seed = 0; seed < kMaps; ++seed) {
-    maps.push_back(estimate_.drawn(now.scale, seed));
-  }
-  found_.near = objective_.near(maps);
+  found_.near = objective_.near(estimate_.drawn(now.scale, kMaps));
   found_.near_of = accepted;
   nearness_found_.times += 1.0;
   if (pace_) pace_(NearnessFound::kWork);

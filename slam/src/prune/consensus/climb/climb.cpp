@@ -318,13 +318,7 @@ bool Climb<Pose>::accept_many_more(double gain) {
   if (failed_[Trial::many_more]) return false;
   const std::size_t had = accepted_count();
   const Group more = likeliest_together(groups(), had, now_.accepted.size());
-  const auto accept_them = [&](auto& now) {
-    for (const Index k : more.loops) now.accepted[k] = true;
-  };
-  if (more.gain > std::max(gain, kBetter) && try_with(accept_them)) {
-    note(more.loops.size(), 0);
-    return true;
-  }
+  if (more.gain > std::max(gain, kBetter) && try_accepting(more.loops)) return true;
   failed_[Trial::many_more] = true;
   return false;
 }
@@ -343,13 +337,7 @@ bool Climb<Pose>::accept_undecided() {
       open.push_back(static_cast<Index>(k));
     }
   }
-  const auto accept_them = [&](auto& now) {
-    for (const Index k : open) now.accepted[k] = true;
-  };
-  if (!open.empty() && try_with(accept_them)) {
-    note(open.size(), 0);
-    return true;
-  }
+  if (!open.empty() && try_accepting(open)) return true;
   failed_[Trial::undecided] = true;
   return false;
 }
@@ -443,6 +431,16 @@ void Climb<Pose>::accept(const Selection& loops) {
   for (const Index k : loops) now_.accepted[k] = true;
   assess();
   note(loops.size(), 0);
+}
+
+// Whether that gains, or else nothing changes.
+template <class Pose>
+bool Climb<Pose>::try_accepting(const Selection& loops) {
+  const bool better = try_with([&](auto& now) {
+    for (const Index k : loops) now.accepted[k] = true;
+  });
+  if (better) note(loops.size(), 0);
+  return better;
 }
 
 // Whether there was anything to learn that gains more than this.

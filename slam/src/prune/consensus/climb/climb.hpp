@@ -123,6 +123,7 @@ class Climb {
   std::vector<Group> gaining_groups() const;
   Group next_batch() const;
   void accept(const Selection& loops);
+  bool try_accepting(const Selection& loops);
   bool learn_more_than(double gain);
   bool weigh_by_others();
   bool weigh_otherwise();

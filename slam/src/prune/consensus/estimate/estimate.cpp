@@ -241,41 +241,51 @@ typename Pose::Tangent Estimate<Pose>::residual(const Link<Pose>& link) const {
   return r;
 }
 
-// To that of the cost: what a link adds whose residual is off by `error`, in its own deviations.
+// To that of the cost: what a link adds whose residual is off by each of `errors`, in its own
+// deviations.
 template <class Pose>
-void Estimate<Pose>::add_error(const Link<Pose>& link, const Matrix& information,
-                               const Tangent& error, Eigen::VectorXd& gradient) const {
+void Estimate<Pose>::add_errors(const Link<Pose>& link, const Matrix& information,
+                                std::span<const Tangent> errors, Eigen::MatrixXd& gradients) const {
   const auto [r, by_a, by_b] = derivative(link);
-  const Tangent u = Eigen::LLT<Matrix>(information).matrixL() * error;
+  const Eigen::LLT<Matrix> root(information);
   const Index a = equations_->gauge().variable[link.a];
   const Index b = equations_->gauge().variable[link.b];
-  if (a >= 0) gradient.template segment<Pose::kDof>(a * Pose::kDof) += by_a.transpose() * u;
-  if (b >= 0) gradient.template segment<Pose::kDof>(b * Pose::kDof) += by_b.transpose() * u;
+  for (std::size_t m = 0; m < errors.size(); ++m) {
+    auto gradient = gradients.col(static_cast<Index>(m));
+    const Tangent u = root.matrixL() * errors[m];
+    if (a >= 0) gradient.template segment<Pose::kDof>(a * Pose::kDof) += by_a.transpose() * u;
+    if (b >= 0) gradient.template segment<Pose::kDof>(b * Pose::kDof) += by_b.transpose() * u;
+  }
 }
 
 // Where least squares would be had every link another error: those solutions have the covariance
 // of the poses (Papandreou and Yuille, Perturb-and-MAP random fields, ICCV 2011).
 template <class Pose>
-std::vector<Pose> Estimate<Pose>::drawn(const CovarianceScale& scale, std::uint64_t seed) const {
-  Random random(seed);
-  const auto error = [&random] {
-    Tangent e;
-    for (int d = 0; d < Pose::kDof; ++d) e[d] = random.normal();
-    return e;
+std::vector<std::vector<Pose>> Estimate<Pose>::drawn(const CovarianceScale& scale,
+                                                     std::size_t count) const {
+  std::vector<Random> random;
+  for (std::size_t seed = 0; seed < count; ++seed) random.emplace_back(seed);
+  std::vector<Tangent> errors(count);
+  const auto next_errors = [&]() -> std::span<const Tangent> {
+    for (std::size_t m = 0; m < count; ++m) errors[m] = random[m].normal_vector<Tangent>();
+    return errors;
   };
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(move_.size());
+  Eigen::MatrixXd gradients = Eigen::MatrixXd::Zero(move_.size(), static_cast<Eigen::Index>(count));
   for (const auto& step : graph_->steps) {
-    add_error(step, step.information / scale.odometry, error(), gradient);
+    add_errors(step, step.information / scale.odometry, next_errors(), gradients);
   }
   std::size_t used = 0;
   for (std::size_t k = 0; k < graph_->loops.size(); ++k) {
-    const Tangent of_loop = error();
+    const auto of_loop = next_errors();
     if (used == used_loops_.size() || used_loops_[used] != static_cast<Index>(k)) continue;
-    add_error(graph_->loops[k], loop_information(used++, scale), of_loop, gradient);
+    add_errors(graph_->loops[k], loop_information(used++, scale), of_loop, gradients);
   }
-  std::vector<Pose> poses = poses_;
-  equations_->retract(equations_->hessian().solve(gradient), poses);
-  return poses;
+  std::vector<std::vector<Pose>> maps(count, poses_);
+  for (std::size_t m = 0; m < count; ++m) {
+    const Eigen::VectorXd gradient = gradients.col(static_cast<Eigen::Index>(m));
+    equations_->retract(equations_->hessian().solve(gradient), maps[m]);
+  }
+  return maps;
 }
 
 template <class Pose>

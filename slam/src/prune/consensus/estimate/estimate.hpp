@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <span>
@@ -59,10 +59,10 @@ class Estimate {
 
   const std::vector<Pose>& poses() const noexcept { return poses_; }
 
-  /// Poses drawn from those that odometry and the accepted loops leave possible: near poses(), by
-  /// their joint covariance after an update at this scale. Of each seed another draw, that changes
-  /// little with the loops accepted: the errors of each link are the same.
-  std::vector<Pose> drawn(const CovarianceScale& scale, std::uint64_t seed) const;
+  /// So many maps drawn from those that odometry and the accepted loops leave possible: near
+  /// poses(), by their joint covariance after an update at this scale. Always the same draws, that
+  /// change little with the loops accepted: the errors of each link are the same.
+  std::vector<std::vector<Pose>> drawn(const CovarianceScale& scale, std::size_t count) const;
 
   /// Whether the last update ended before its steps did.
   bool settled() const noexcept { return settled_; }
@@ -117,8 +117,8 @@ class Estimate {
  private:
   void lay_out(const std::vector<bool>& accepted);
   Matrix loop_information(std::size_t used, const CovarianceScale& scale) const;
-  void add_error(const Link<Pose>& link, const Matrix& information, const Tangent& error,
-                 Eigen::VectorXd& gradient) const;
+  void add_errors(const Link<Pose>& link, const Matrix& information,
+                  std::span<const Tangent> errors, Eigen::MatrixXd& gradients) const;
   void linearize(const CovarianceScale& scale);
   void factorise();
   Eigen::VectorXd next_move();
