@@ -5,7 +5,7 @@
 namespace isotherm::detail {
 namespace {
 
-// A function of the BLAS that is loaded, if it has one of that name.
+// A function of the libraries that are loaded, if one has it.
 template <class Function>
 Function* find(const char* name) {
   return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
@@ -23,6 +23,19 @@ bool prepare() {
 bool blas_serves_threads() {
   static const bool serves = prepare();
   return serves;
+}
+
+SequentialOpenMp::SequentialOpenMp() {
+  static auto* const levels = find<int()>("omp_get_max_active_levels");
+  if (levels != nullptr) levels_ = levels();
+  allow(0);
+}
+
+SequentialOpenMp::~SequentialOpenMp() { allow(levels_); }
+
+void SequentialOpenMp::allow(int levels) {
+  static auto* const set = find<void(int)>("omp_set_max_active_levels");
+  if (set != nullptr) set(levels);
 }
 
 }  // namespace isotherm::detail

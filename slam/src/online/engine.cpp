@@ -8,7 +8,6 @@
 
 #include "isotherm/base/error.hpp"
 #include "online/present_map.hpp"
-#include "online/reason.hpp"
 #include "prune/consensus/climb/report.hpp"
 #include "prune/consensus/constants.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
@@ -82,7 +81,7 @@ void OnlineEngine<Pose>::go_on() {
   const bool few = searched_ <= kFew;
   const double until = search_work(loops_) / (kUntil * static_cast<double>(rows_.size()));
   search_everywhere(!map_ ? kNoLimit : few ? work : std::min(work, until));
-  follow_up(std::min(following_credit(), work));
+  follow_up(leads_higher() ? work : std::min(following_credit(), work));
 }
 
 // Of one search from every start on so many loops: as many pieces as in the last one, with as many
@@ -97,6 +96,13 @@ double OnlineEngine<Pose>::search_work(Index loops) const {
 template <class Pose>
 double OnlineEngine<Pose>::allowance(Index loops) const {
   return options_.effort * searches_a_batch_takes_ * search_work(loops);
+}
+
+// What a search from every start has found is gone on from in any case: it would be for nothing
+// else.
+template <class Pose>
+bool OnlineEngine<Pose>::leads_higher() const {
+  return rival_ || (next_ && next_->from.size() > 1);
 }
 
 template <class Pose>
@@ -151,16 +157,24 @@ void OnlineEngine<Pose>::search_everywhere(double budget) {
   }
 }
 
-// From where the last one stood, as soon as there is a loop that it has not seen.
+// Whether a loop has come that the map has not seen, and as many more edges, for all there are, as
+// following up takes of what it may: so what is left lasts.
+template <class Pose>
+bool OnlineEngine<Pose>::is_following_due() const {
+  const auto seen = static_cast<Index>(map_->graph().constraints.size());
+  const auto& edges = log_.edges();
+  const bool news =
+      std::any_of(edges.begin() + seen, edges.end(), [](const auto& edge) { return !edge.step; });
+  const auto more = static_cast<double>(static_cast<Index>(edges.size()) - seen);
+  return news && more * following_credit() >= last_following_ * static_cast<double>(edges.size());
+}
+
+// From where the last one stood.
 template <class Pose>
 void OnlineEngine<Pose>::follow_up(double budget) {
   if (!map_ || budget <= 0.0) return;
   if (!next_) {
-    const auto seen = static_cast<Index>(map_->graph().constraints.size());
-    const auto& edges = log_.edges();
-    const bool news =
-        std::any_of(edges.begin() + seen, edges.end(), [](const auto& edge) { return !edge.step; });
-    if (!news && !rival_) return;
+    if (!rival_ && !is_following_due()) return;
     next_ = begin(false);
     rival_.reset();
   }
@@ -168,6 +182,7 @@ void OnlineEngine<Pose>::follow_up(double budget) {
   const bool done = run(*next_, budget);
   following_work_ += next_->task->spent() - before;
   if (!done) return;
+  last_following_ = next_->task->spent();
   const auto map = next_->map;
   next_.reset();
   adopt(map);
@@ -265,9 +280,7 @@ void OnlineEngine<Pose>::judge_run(Index edge) {
         verdict_of(accepted, log_odds, row.threshold, map_->refutes() && standing.connected());
     row.probability = probability_of(log_odds);
     row.stage = stage_of(accepted, standing.connected());
-    auto reason =
-        accepted && together ? reason_together(standing.chi2) : reason_of(row, standing.chi2);
-    set(std::move(row), std::move(reason));
+    set(std::move(row), {.chi2 = standing.chi2, .together = accepted && together});
   }
 }
 
@@ -276,7 +289,7 @@ void OnlineEngine<Pose>::take_over(const PruneResult& result) {
   const auto& details = result.consensus.details;
   for (std::size_t k = 0; k < result.verdicts.size(); ++k) {
     const double chi2 = details.empty() ? 0.0 : details[k].chi2;
-    set(result.verdicts[k], reason_of(result.verdicts[k], chi2));
+    set(result.verdicts[k], {.chi2 = chi2});
   }
 }
 
@@ -292,7 +305,7 @@ void OnlineEngine<Pose>::judge(Index number) {
     row.stage = "self-edge";
   } else if (repeated) {
     const auto& original = rows_[*repeated].now;
-    if (original) row = original->verdict;
+    if (original) row = *original;
     row.edge = number;
     if (!original) row.verdict = spectral::Verdict::keep;
     row.stage = "repeat";
@@ -300,16 +313,16 @@ void OnlineEngine<Pose>::judge(Index number) {
     consider(number);
     return judge_run(number);
   }
-  auto reason = reason_of(row, 0.0);
-  set(std::move(row), std::move(reason));
+  set(std::move(row), {});
 }
 
 template <class Pose>
-void OnlineEngine<Pose>::set(spectral::EdgeVerdict verdict, std::string reason) {
+void OnlineEngine<Pose>::set(spectral::EdgeVerdict verdict, const Grounds& grounds) {
   const auto edge = static_cast<Index>(verdict.edge);
   Row& row = rows_[edge];
-  row.now = LoopChange{std::move(verdict), std::move(reason), false};
-  if (row.told != row.now->verdict.verdict) fresh_.push_back(edge);
+  row.now = std::move(verdict);
+  row.grounds = grounds;
+  if (row.told != row.now->verdict) fresh_.push_back(edge);
 }
 
 template <class Pose>
@@ -318,10 +331,9 @@ std::vector<LoopChange> OnlineEngine<Pose>::changes() {
   std::vector<LoopChange> changes;
   for (const Index edge : fresh_) {
     Row& row = rows_[edge];
-    if (row.told == row.now->verdict.verdict) continue;
-    changes.push_back(*row.now);
-    changes.back().first = !row.told.has_value();
-    row.told = row.now->verdict.verdict;
+    if (row.told == row.now->verdict) continue;
+    changes.push_back({*row.now, reason_of(*row.now, row.grounds), !row.told.has_value()});
+    row.told = row.now->verdict;
   }
   fresh_.clear();
   return changes;
@@ -360,7 +372,7 @@ template <class Pose>
 spectral::EdgeVerdicts OnlineEngine<Pose>::verdicts() const {
   spectral::EdgeVerdicts all;
   for (const auto& row : rows_) {
-    if (row.now) all.push_back(row.now->verdict);
+    if (row.now) all.push_back(*row.now);
   }
   return all;
 }
@@ -377,22 +389,24 @@ bool OnlineEngine<Pose>::has_news() const {
 template <class Pose>
 bool OnlineEngine<Pose>::is_accepted(Index edge) const {
   const auto& now = rows_[edge].now;
-  return now && now->verdict.stage == stage_of(true, true);
+  return now && now->stage == stage_of(true, true);
 }
 
 // With the loops that are thought true now, as accurate as was learnt.
 template <class Pose>
 void OnlineEngine<Pose>::bring_up_to_date(PoseGraph<Pose>& graph) const {
-  std::vector<bool> steps;
-  std::vector<bool> used;
-  for (Index k = 0; k < static_cast<Index>(rows_.size()); ++k) {
-    steps.push_back(log_.edges()[k].step);
-    used.push_back(is_accepted(k));
+  const auto edges = static_cast<Index>(rows_.size());
+  const Index judged_together = finished_ ? edges : map_->graph().constraint_count();
+  std::vector<Use> uses;
+  for (Index k = 0; k < edges; ++k) {
+    const Use as_loop = k < judged_together ? Use::loop : Use::loop_as_it_came;
+    const bool step = log_.edges()[k].step;
+    uses.push_back(step ? Use::step : is_accepted(k) ? as_loop : Use::none);
   }
   const auto& best = map_->best();
   const Accuracy<Pose> accuracy{best.scale.odometry * best.shapes.odometry,
                                 best.scale.loops * best.shapes.loops};
-  settle_poses(graph, steps, used, accuracy, finished_ ? Judged::together : Judged::when_they_came);
+  settle_poses(graph, uses, accuracy);
 }
 
 // Vertices that the map has not follow odometry.

@@ -11,6 +11,7 @@
 #include "online/open_runs.hpp"
 #include "online/outlook.hpp"
 #include "online/paced_task.hpp"
+#include "online/reason.hpp"
 #include "online/saved_edges.hpp"
 #include "online/snapshot.hpp"
 
@@ -55,7 +56,8 @@ class OnlineEngine {
 
   /// The verdict on an edge, unless it is a step.
   struct Row {
-    std::optional<LoopChange> now;
+    std::optional<spectral::EdgeVerdict> now;
+    Grounds grounds;
     std::optional<spectral::Verdict> told;
   };
 
@@ -67,6 +69,8 @@ class OnlineEngine {
   double search_work(Index loops) const;
   double allowance(Index loops) const;
   double following_credit() const;
+  bool leads_higher() const;
+  bool is_following_due() const;
   void follow_up(double budget);
   Search begin(bool everywhere) const;
   bool run(Search& search, double budget);
@@ -79,7 +83,7 @@ class OnlineEngine {
   bool has_news() const;
   bool is_accepted(Index edge) const;
   void bring_up_to_date(PoseGraph<Pose>& graph) const;
-  void set(spectral::EdgeVerdict verdict, std::string reason);
+  void set(spectral::EdgeVerdict verdict, const Grounds& grounds);
   std::vector<LoopChange> changes();
 
   OnlineOptions options_;
@@ -103,6 +107,7 @@ class OnlineEngine {
   Index search_of_ = 1;          // loops that it had
   double searches_work_ = 0.0;   // of all of those
   double following_work_ = 0.0;  // of following up
+  double last_following_ = 0.0;  // of the last time
   bool finished_ = false;        // verdicts are the batch's on all that has come
 };
 

@@ -8,32 +8,34 @@
 namespace isotherm::slam::detail {
 
 template <class Pose>
-void settle_poses(PoseGraph<Pose>& graph, const std::vector<bool>& is_step,
-                  const std::vector<bool>& used, const Accuracy<Pose>& accuracy, Judged judged) {
+void settle_poses(PoseGraph<Pose>& graph, const std::vector<Use>& uses,
+                  const Accuracy<Pose>& accuracy) {
   PoseGraph<Pose> part{graph.ids, graph.poses, {}, graph.fixed};
   EdgeRoles roles;
   for (std::size_t k = 0; k < graph.constraints.size(); ++k) {
-    if (!is_step[k] && !used[k]) continue;
+    if (uses[k] == Use::none) continue;
     auto constraint = graph.constraints[k];
-    const auto& variances = is_step[k] ? accuracy.steps : accuracy.loops;
+    const auto& variances = uses[k] == Use::step ? accuracy.steps : accuracy.loops;
     const typename Pose::Tangent root = variances.cwiseSqrt().cwiseInverse();
     constraint.information = root.asDiagonal() * constraint.information * root.asDiagonal();
-    (is_step[k] ? roles.odometry : roles.candidates).push_back(part.constraint_count());
+    const bool doubtful = uses[k] == Use::loop_as_it_came;
+    (doubtful ? roles.candidates : roles.odometry).push_back(part.constraint_count());
     part.constraints.push_back(std::move(constraint));
   }
-  OptimizeOptions options;
-  options.kernel = judged == Judged::together ? RobustKernel::none : RobustKernel::gnc;
-  options.initialization = Initialization::file;
   try {
-    graph.poses = optimize(part, roles, options).poses;
+    // How well loops fit where odometry alone has led says little of them.
+    for (const auto kernel : {RobustKernel::none, RobustKernel::gnc}) {
+      if (kernel == RobustKernel::gnc && roles.candidates.empty()) break;
+      part.poses =
+          optimize(part, roles, {.kernel = kernel, .initialization = Initialization::file}).poses;
+    }
   } catch (const NumericalError&) {
     return;
   }
+  graph.poses = std::move(part.poses);
 }
 
-template void settle_poses(PoseGraph<Pose2>&, const std::vector<bool>&, const std::vector<bool>&,
-                           const Accuracy<Pose2>&, Judged);
-template void settle_poses(PoseGraph<Pose3>&, const std::vector<bool>&, const std::vector<bool>&,
-                           const Accuracy<Pose3>&, Judged);
+template void settle_poses(PoseGraph<Pose2>&, const std::vector<Use>&, const Accuracy<Pose2>&);
+template void settle_poses(PoseGraph<Pose3>&, const std::vector<Use>&, const Accuracy<Pose3>&);
 
 }  // namespace isotherm::slam::detail

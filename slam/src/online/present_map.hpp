@@ -13,17 +13,19 @@ struct Accuracy {
   typename Pose::Tangent loops = Pose::Tangent::Ones();
 };
 
-/// How loops were judged.
-enum class Judged {
-  when_they_came,  ///< by what was known then: those that the others contradict do not count
+/// What a constraint counts for.
+enum class Use {
+  none,
+  step,
+  loop,            ///< judged together with the others
+  loop_as_it_came  ///< judged by what was known then: not used where all others contradict it
                    ///< (truncated least squares)
-  together,        ///< all count
 };
 
-/// Moves the poses of `graph`, which lie near, to where its steps and the loops that are `used`,
-/// one entry a constraint, fit best. Where that cannot be found they stay.
+/// Moves the poses of `graph`, which lie near, to where its constraints, one entry of `uses` each,
+/// fit best. Where that cannot be found they stay.
 template <class Pose>
-void settle_poses(PoseGraph<Pose>& graph, const std::vector<bool>& is_step,
-                  const std::vector<bool>& used, const Accuracy<Pose>& accuracy, Judged judged);
+void settle_poses(PoseGraph<Pose>& graph, const std::vector<Use>& uses,
+                  const Accuracy<Pose>& accuracy);
 
 }  // namespace isotherm::slam::detail

@@ -5,7 +5,19 @@
 
 namespace isotherm::slam::detail {
 
-std::string reason_of(const spectral::EdgeVerdict& verdict, double chi2) {
+namespace {
+
+std::string reason_together(double chi2) {
+  std::ostringstream text;
+  text << "agrees with the loops next to it, which say together how odometry has drifted (chi2 "
+       << std::setprecision(3) << chi2 << " against the map so far)";
+  return text.str();
+}
+
+}  // namespace
+
+std::string reason_of(const spectral::EdgeVerdict& verdict, const Grounds& grounds) {
+  if (grounds.together) return reason_together(grounds.chi2);
   if (verdict.stage == "self-edge") return "joins a pose with itself";
   if (verdict.stage == "repeat") return "repeats another edge to the last digit";
   if (verdict.stage == "waiting") return "nothing to hold it against yet";
@@ -22,14 +34,7 @@ std::string reason_of(const spectral::EdgeVerdict& verdict, double chi2) {
       text << "not proven either way";
       break;
   }
-  text << " (chi2 " << std::setprecision(3) << chi2 << ')';
-  return text.str();
-}
-
-std::string reason_together(double chi2) {
-  std::ostringstream text;
-  text << "agrees with the loops next to it, which say together how odometry has drifted (chi2 "
-       << std::setprecision(3) << chi2 << " against the map so far)";
+  text << " (chi2 " << std::setprecision(3) << grounds.chi2 << ')';
   return text.str();
 }
 

@@ -6,10 +6,13 @@
 
 namespace isotherm::slam::detail {
 
-/// One sentence on why a loop has its verdict.
-std::string reason_of(const spectral::EdgeVerdict& verdict, double chi2);
+/// What a loop's verdict stands on.
+struct Grounds {
+  double chi2 = 0.0;
+  bool together = false;  ///< kept for the sake of the loops next to it
+};
 
-/// The same of one that is kept for the sake of the loops next to it.
-std::string reason_together(double chi2);
+/// One sentence on why a loop has its verdict.
+std::string reason_of(const spectral::EdgeVerdict& verdict, const Grounds& grounds);
 
 }  // namespace isotherm::slam::detail

@@ -185,6 +185,7 @@ bool CholmodFactor::factorise(const LowerTriangle& matrix) {
   impl_->usable = false;
   common.status = CHOLMOD_OK;
   cholmod_sparse view = view_of(matrix);
+  const isotherm::detail::SequentialOpenMp sequential;
   const bool ran = cholmod_factorize(&view, impl_->factor, &common) != 0;
   if (common.status < CHOLMOD_OK) {
     throw NumericalError("cholesky", "CHOLMOD failed with status " + std::to_string(common.status));

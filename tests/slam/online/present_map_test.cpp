@@ -24,8 +24,7 @@ TYPED_TEST_SUITE(PresentMapOf, Poses);
 template <class Pose>
 struct Contradicted {
   PoseGraph<Pose> graph;
-  std::vector<bool> steps;
-  std::vector<bool> used;
+  std::vector<Use> uses;
 
   Contradicted() {
     Random random(5);
@@ -37,19 +36,19 @@ struct Contradicted {
     wrong.to = graph.vertex_count() / 2;
     wrong.T_from_to = Pose();
     graph.constraints.push_back(wrong);
-    steps.assign(graph.constraints.size(), false);
-    for (const Index k : edge_roles(graph).odometry) steps[k] = true;
-    used.assign(graph.constraints.size(), true);
+    uses.assign(graph.constraints.size(), Use::loop);
+    for (const Index k : edge_roles(graph).odometry) uses[k] = Use::step;
+    uses.back() = Use::loop_as_it_came;
   }
 };
 
 TYPED_TEST(PresentMapOf, IsNotBentByALoopThatTheOthersContradict) {
   Contradicted<TypeParam> with;
   const auto given = with.graph.poses;
-  settle_poses(with.graph, with.steps, with.used, {}, Judged::when_they_came);
+  settle_poses(with.graph, with.uses, {});
   Contradicted<TypeParam> without;
-  without.used.back() = false;
-  settle_poses(without.graph, without.steps, without.used, {}, Judged::when_they_came);
+  without.uses.back() = Use::none;
+  settle_poses(without.graph, without.uses, {});
   EXPECT_GT(worst_difference(without.graph.poses, given), 1e-6);
   EXPECT_LT(worst_difference(with.graph.poses, without.graph.poses), 1e-6);
 }
@@ -58,10 +57,33 @@ TYPED_TEST(PresentMapOf, IsNotBentByALoopThatTheOthersContradict) {
 TYPED_TEST(PresentMapOf, CountsAllLoopsThatWereJudgedTogether) {
   Contradicted<TypeParam> known;
   auto whole = known.graph;
-  settle_poses(known.graph, known.steps, known.used, {}, Judged::together);
+  known.uses.back() = Use::loop;
+  settle_poses(known.graph, known.uses, {});
   const auto optimum = optimize(whole, edge_roles(whole), {.cost_tolerance = 1e-12}).poses;
   EXPECT_LT(worst_difference(known.graph.poses, optimum),
             1e-2 * worst_difference(whole.poses, optimum));
+}
+
+// Odometry turns a little too far at every step: the loops that came since agree with each other
+// and with the way as it was, but none of them fits where odometry has led.
+TYPED_TEST(PresentMapOf, FollowsLoopsThatCameTogetherAgainstOdometry) {
+  Random random(7);
+  const auto made = random_loop_graph<TypeParam>(random, 60, 40, 1.0, 1e8);
+  auto graph = made.graph;
+  std::vector<Use> uses(graph.constraints.size(), Use::loop_as_it_came);
+  typename TypeParam::Tangent drift = TypeParam::Tangent::Zero();
+  drift[TypeParam::kDof - 1] = 0.03;
+  for (const Index k : edge_roles(graph).odometry) {
+    uses[k] = Use::step;
+    auto& step = graph.constraints[k];
+    step.T_from_to = step.T_from_to * TypeParam::exp(drift);
+    step.information *= 1e-6;
+  }
+  graph.poses = odometry_poses(graph, edge_roles(graph));
+  const auto whole = graph;
+  settle_poses(graph, uses, {});
+  const auto optimum = optimize(whole, edge_roles(whole), {.cost_tolerance = 1e-12}).poses;
+  EXPECT_LT(worst_difference(graph.poses, optimum), 1e-2 * worst_difference(whole.poses, optimum));
 }
 
 }  // namespace

@@ -1,5 +1,9 @@
 #include "sparse/cholmod_factor.hpp"
 
+#include <filesystem>
+#include <iterator>
+#include <thread>
+
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 
@@ -75,6 +79,22 @@ TEST(CholmodFactor, SolvesAndCountsAsADenseSolverDoes) {
 }
 
 // Every entry of L has its place, and joining adds few others.
+// A thread that CHOLMOD's OpenMP begins stays until the one that asked for it ends.
+TEST(CholmodFactor, BeginsNoThreads) {
+  const std::filesystem::path tasks = "/proc/self/task";
+  if (!std::filesystem::exists(tasks)) GTEST_SKIP() << "threads are counted in " << tasks;
+  const auto count = [&tasks] {
+    return std::distance(std::filesystem::directory_iterator(tasks), {});
+  };
+  std::ptrdiff_t begun = 0;
+  std::thread([&] {
+    const auto before = count();
+    const CholmodFactor factor(random_grid(70), FactorKind::supernodal);
+    begun = count() - before;
+  }).join();
+  EXPECT_EQ(begun, 0);
+}
+
 TEST(FindSupernodes, CoverTheFactor) {
   const SparseMatrix lower = random_grid(20);
   const auto order = fill_reducing_order(lower_triangle(lower));

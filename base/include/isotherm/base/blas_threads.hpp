@@ -12,4 +12,20 @@ namespace isotherm::detail {
 /// So it comes before the first use of the BLAS.
 bool blas_serves_threads();
 
+/// While it lives, what a library does with OpenMP on this thread it does on this thread alone.
+/// CHOLMOD as Debian builds it asks for four threads for every front, whatever `OMP_NUM_THREADS`
+/// says; where each of many small maps is factorised, a sixth of all time went into waking them.
+class SequentialOpenMp {
+ public:
+  SequentialOpenMp();
+  SequentialOpenMp(const SequentialOpenMp&) = delete;
+  SequentialOpenMp& operator=(const SequentialOpenMp&) = delete;
+  ~SequentialOpenMp();
+
+ private:
+  static void allow(int levels);
+
+  int levels_ = 1;  // of parallel regions in each other, before
+};
+
 }  // namespace isotherm::detail
