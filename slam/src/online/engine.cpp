@@ -81,7 +81,7 @@ void OnlineEngine<Pose>::go_on() {
   const bool few = searched_ <= kFew;
   const double until = search_work(loops_) / (kUntil * static_cast<double>(rows_.size()));
   search_everywhere(!map_ ? kNoLimit : few ? work : std::min(work, until));
-  follow_up(leads_higher() ? work : std::min(following_credit(), work));
+  follow_up(work);
 }
 
 // Of one search from every start on so many loops: as many pieces as in the last one, with as many
@@ -96,13 +96,6 @@ double OnlineEngine<Pose>::search_work(Index loops) const {
 template <class Pose>
 double OnlineEngine<Pose>::allowance(Index loops) const {
   return options_.effort * searches_a_batch_takes_ * search_work(loops);
-}
-
-// What a search from every start has found is gone on from in any case: it would be for nothing
-// else.
-template <class Pose>
-bool OnlineEngine<Pose>::leads_higher() const {
-  return rival_ || (next_ && next_->from.size() > 1);
 }
 
 template <class Pose>
@@ -169,10 +162,11 @@ bool OnlineEngine<Pose>::is_following_due() const {
   return news && more * following_credit() >= last_following_ * static_cast<double>(edges.size());
 }
 
-// From where the last one stood.
+// From where the last one stood, and from where a search from every start led higher. Once begun it
+// is ended: else all of it would be for nothing.
 template <class Pose>
 void OnlineEngine<Pose>::follow_up(double budget) {
-  if (!map_ || budget <= 0.0) return;
+  if (!map_) return;
   if (!next_) {
     if (!rival_ && !is_following_due()) return;
     next_ = begin(false);

@@ -69,7 +69,6 @@ class OnlineEngine {
   double search_work(Index loops) const;
   double allowance(Index loops) const;
   double following_credit() const;
-  bool leads_higher() const;
   bool is_following_due() const;
   void follow_up(double budget);
   Search begin(bool everywhere) const;

@@ -23,8 +23,9 @@ void settle_poses(PoseGraph<Pose>& graph, const std::vector<Use>& uses,
     part.constraints.push_back(std::move(constraint));
   }
   try {
-    // How well loops fit where odometry alone has led says little of them.
-    for (const auto kernel : {RobustKernel::none, RobustKernel::gnc}) {
+    // How well loops fit where odometry alone has led says little of them; and a few false ones
+    // must not lead the rest astray.
+    for (const auto kernel : {RobustKernel::huber, RobustKernel::gnc}) {
       if (kernel == RobustKernel::gnc && roles.candidates.empty()) break;
       part.poses =
           optimize(part, roles, {.kernel = kernel, .initialization = Initialization::file}).poses;

@@ -256,7 +256,7 @@ bool Climb<Pose>::has_fallen_behind() const {
 template <class Pose>
 bool Climb<Pose>::move() {
   return shift() || learn_more_than(0.0) || weigh_by_others() || weigh_otherwise() ||
-         accept_many_more(0.0) || accept_undecided();
+         accept_many_more(0.0) || accept_undecided() || drop_undecided();
 }
 
 // The same at about these scales.
@@ -317,7 +317,7 @@ template <class Pose>
 bool Climb<Pose>::accept_many_more(double gain) {
   if (failed_[Trial::many_more]) return false;
   const std::size_t had = accepted_count();
-  const Group more = likeliest_together(groups(), had, now_.accepted.size());
+  const Group more = likeliest_together(groups(open()), had, now_.accepted.size());
   if (more.gain > std::max(gain, kBetter) && try_accepting(more.loops)) return true;
   failed_[Trial::many_more] = true;
   return false;
@@ -339,6 +339,31 @@ bool Climb<Pose>::accept_undecided() {
   }
   if (!open.empty() && try_accepting(open)) return true;
   failed_[Trial::undecided] = true;
+  return false;
+}
+
+// All runs of which a loop is not true beyond doubt: as long as the others of a run are accepted,
+// each fits.
+template <class Pose>
+bool Climb<Pose>::drop_undecided() {
+  if (failed_[Trial::doubtful]) return false;
+  const double most = log_odds_of(1.0 - options_.significance);
+  Selection out;
+  for (const Group& run : groups(now_.accepted)) {
+    const auto in_doubt = [&](Index k) { return now_.standings[k].log_odds < most; };
+    if (std::ranges::any_of(run.loops, in_doubt)) {
+      out.insert(out.end(), run.loops.begin(), run.loops.end());
+    }
+  }
+  const bool better = !out.empty() && out.size() < accepted_count() && try_with([&](auto& now) {
+    for (const Index k : out) now.accepted[k] = false;
+  });
+  if (better) {
+    for (const Index k : out) dropped_[k] = true;
+    note(0, out.size());
+    return true;
+  }
+  failed_[Trial::doubtful] = true;
   return false;
 }
 
@@ -405,18 +430,23 @@ void Climb<Pose>::drop(const Selection& loops) {
 }
 
 template <class Pose>
-std::vector<Group> Climb<Pose>::groups() const {
+std::vector<bool> Climb<Pose>::open() const {
   std::vector<bool> open(dropped_.size());
   for (std::size_t k = 0; k < open.size(); ++k) {
     open[k] = !now_.accepted[k] && !dropped_[k];
   }
-  return groups_of(objective_.runs(), open, now_.standings, run_density_,
+  return open;
+}
+
+template <class Pose>
+std::vector<Group> Climb<Pose>::groups(const std::vector<bool>& among) const {
+  return groups_of(objective_.runs(), among, now_.standings, run_density_,
                    [&](Index k) { return assessment_.log_alternative(k); });
 }
 
 template <class Pose>
 std::vector<Group> Climb<Pose>::gaining_groups() const {
-  auto all = groups();
+  auto all = groups(open());
   std::erase_if(all, [](const Group& group) { return group.gain <= 0.0; });
   return all;
 }

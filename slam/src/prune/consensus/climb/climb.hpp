@@ -79,6 +79,7 @@ class Climb {
     wide_loops,
     many_more,
     undecided,
+    doubtful,
     trials
   };
 
@@ -119,7 +120,8 @@ class Climb {
   Selection misfits() const;
   double gain_of_dropping(const Selection& loops) const;
   void drop(const Selection& loops);
-  std::vector<Group> groups() const;
+  std::vector<bool> open() const;
+  std::vector<Group> groups(const std::vector<bool>& among) const;
   std::vector<Group> gaining_groups() const;
   Group next_batch() const;
   void accept(const Selection& loops);
@@ -129,6 +131,7 @@ class Climb {
   bool weigh_otherwise();
   bool accept_many_more(double gain);
   bool accept_undecided();
+  bool drop_undecided();
   void draw_anew();
   bool try_with(const Change& change, double gain = kBetter, const Layout* from = nullptr);
   Place place() const { return {now_, assessment_.findings(), run_density_, failed_}; }
