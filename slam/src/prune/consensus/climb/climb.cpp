@@ -127,7 +127,7 @@ Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
   grow();
   now_.accepted = accepted;
   assess();
-  while (learn_more_than(0.0) || weigh_by_others() || weigh_otherwise()) {
+  while (learn_more_than(0.0) || weigh_anew()) {
   }
   return now_;
 }
@@ -255,8 +255,9 @@ bool Climb<Pose>::has_fallen_behind() const {
 // False where no move is left.
 template <class Pose>
 bool Climb<Pose>::move() {
-  return shift() || learn_more_than(0.0) || weigh_by_others() || weigh_otherwise() ||
-         accept_many_more(0.0) || accept_undecided() || drop_undecided();
+  return shift() || learn_more_than(0.0) || weigh_anew() || accept_many_more(0.0) ||
+         once(Trial::undecided, [this] { return accept_undecided(); }) ||
+         once(Trial::doubtful, [this] { return drop_undecided(); });
 }
 
 // The same at about these scales.
@@ -275,11 +276,19 @@ bool Climb<Pose>::shift() {
   return true;
 }
 
+// Unless it failed here before.
+template <class Pose>
+bool Climb<Pose>::once(Trial trial, const std::function<bool()>& move) {
+  if (failed_[trial]) return false;
+  if (move()) return true;
+  failed_[trial] = true;
+  return false;
+}
+
 // A loop that is taken for accurate draws the map to itself, and looks accurate there: each is as
 // accurate as the others say.
 template <class Pose>
 bool Climb<Pose>::weigh_by_others() {
-  if (failed_[Trial::weights_by_others]) return false;
   const ScaleMixture& mixture = assessment_.findings().mixture;
   std::vector<LoopWeight> weights = now_.weights;
   bool differ = false;
@@ -289,9 +298,7 @@ bool Climb<Pose>::weigh_by_others() {
     differ = differ ||
              are_of_different_scales(mixture.factor(weights[k]), mixture.factor(now_.weights[k]));
   }
-  if (differ && try_with([&](auto& now) { now.weights = weights; })) return true;
-  failed_[Trial::weights_by_others] = true;
-  return false;
+  return differ && try_with([&](auto& now) { now.weights = weights; });
 }
 
 // Odometry against loops: where the one is taken for exact, the other has all the errors, of which
@@ -300,27 +307,26 @@ template <class Pose>
 bool Climb<Pose>::weigh_otherwise() {
   const double redundancy = now_.redundancy.odometry.sum() + now_.redundancy.loops.sum();
   if (!options_.calibrate || redundancy < 1.0) return false;  // nothing tells
-  if (failed_[Trial::wide_loops]) return false;
   const auto [factor, shares] = all_as_worst(now_.shares);
   const Lesson<Pose> wider{{now_.scale.odometry, now_.scale.loops * factor}, now_.shapes, shares};
-  if (std::log(wider.scale.loops) < kMostScale &&
-      most_gain_of_wider(factor, assessment_, now_) > kBetter && try_with(scales_of(wider))) {
-    return true;
-  }
-  failed_[Trial::wide_loops] = true;
-  return false;
+  return std::log(wider.scale.loops) < kMostScale &&
+         most_gain_of_wider(factor, assessment_, now_) > kBetter && try_with(scales_of(wider));
+}
+
+template <class Pose>
+bool Climb<Pose>::weigh_anew() {
+  return once(Trial::weights_by_others, [this] { return weigh_by_others(); }) ||
+         once(Trial::wide_loops, [this] { return weigh_otherwise(); });
 }
 
 // Whether loops of which none gains alone, while few are thought true, gain more than this
 // together.
 template <class Pose>
 bool Climb<Pose>::accept_many_more(double gain) {
-  if (failed_[Trial::many_more]) return false;
-  const std::size_t had = accepted_count();
-  const Group more = likeliest_together(groups(open()), had, now_.accepted.size());
-  if (more.gain > std::max(gain, kBetter) && try_accepting(more.loops)) return true;
-  failed_[Trial::many_more] = true;
-  return false;
+  return once(Trial::many_more, [&] {
+    const Group more = likeliest_together(groups(open()), accepted_count(), now_.accepted.size());
+    return more.gain > std::max(gain, kBetter) && try_all_as(more.loops, true);
+  });
 }
 
 // All loops that are not false beyond doubt, by twice the log odds that a verdict takes: where a
@@ -328,25 +334,20 @@ bool Climb<Pose>::accept_many_more(double gain) {
 // they may put right.
 template <class Pose>
 bool Climb<Pose>::accept_undecided() {
-  if (failed_[Trial::undecided]) return false;
   const double least = 2.0 * log_odds_of(options_.significance);
   Selection open;
   for (std::size_t k = 0; k < now_.standings.size(); ++k) {
-    const auto& [first, second] = now_.standings[k].parts;
-    if (!now_.accepted[k] && first == second && now_.standings[k].log_odds > least) {
+    if (!now_.accepted[k] && now_.standings[k].connected() && now_.standings[k].log_odds > least) {
       open.push_back(static_cast<Index>(k));
     }
   }
-  if (!open.empty() && try_accepting(open)) return true;
-  failed_[Trial::undecided] = true;
-  return false;
+  return try_all_as(open, true);
 }
 
 // All runs of which a loop is not true beyond doubt: as long as the others of a run are accepted,
 // each fits.
 template <class Pose>
 bool Climb<Pose>::drop_undecided() {
-  if (failed_[Trial::doubtful]) return false;
   const double most = log_odds_of(1.0 - options_.significance);
   Selection out;
   for (const Group& run : groups(now_.accepted)) {
@@ -355,16 +356,7 @@ bool Climb<Pose>::drop_undecided() {
       out.insert(out.end(), run.loops.begin(), run.loops.end());
     }
   }
-  const bool better = !out.empty() && out.size() < accepted_count() && try_with([&](auto& now) {
-    for (const Index k : out) now.accepted[k] = false;
-  });
-  if (better) {
-    for (const Index k : out) dropped_[k] = true;
-    note(0, out.size());
-    return true;
-  }
-  failed_[Trial::doubtful] = true;
-  return false;
+  return out.size() < accepted_count() && try_all_as(out, false);
 }
 
 // Steps that do not settle may be on the way to another minimum than the least.
@@ -463,14 +455,18 @@ void Climb<Pose>::accept(const Selection& loops) {
   note(loops.size(), 0);
 }
 
-// Whether that gains, or else nothing changes.
+// Whether it gains that all of these are `accepted`, or none, or else nothing changes.
 template <class Pose>
-bool Climb<Pose>::try_accepting(const Selection& loops) {
-  const bool better = try_with([&](auto& now) {
-    for (const Index k : loops) now.accepted[k] = true;
+bool Climb<Pose>::try_all_as(const Selection& loops, bool accepted) {
+  const bool better = !loops.empty() && try_with([&](auto& now) {
+    for (const Index k : loops) now.accepted[k] = accepted;
   });
-  if (better) note(loops.size(), 0);
-  return better;
+  if (!better) return false;
+  if (!accepted) {
+    for (const Index k : loops) dropped_[k] = true;
+  }
+  note(accepted ? loops.size() : 0, accepted ? 0 : loops.size());
+  return true;
 }
 
 // Whether there was anything to learn that gains more than this.

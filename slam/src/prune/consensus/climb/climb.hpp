@@ -125,8 +125,10 @@ class Climb {
   std::vector<Group> gaining_groups() const;
   Group next_batch() const;
   void accept(const Selection& loops);
-  bool try_accepting(const Selection& loops);
+  bool try_all_as(const Selection& loops, bool accepted);
   bool learn_more_than(double gain);
+  bool once(Trial trial, const std::function<bool()>& move);
+  bool weigh_anew();
   bool weigh_by_others();
   bool weigh_otherwise();
   bool accept_many_more(double gain);
