@@ -29,12 +29,12 @@ class LeftRightTest {
         chosen_(chosen),
         vertices_(graph.vertex_count()),
         edges_(graph.edges().size()) {
-    std::size_t places = 0;
+    Index places = 0;
     for (Index vertex = 0; vertex < graph.vertex_count(); ++vertex) {
       vertices_[vertex].begin = vertices_[vertex].end = places;
-      places += graph.neighbours(vertex).size();
+      places += degree(vertex);
     }
-    outgoing_.resize(places);
+    outgoing_.resize(static_cast<std::size_t>(places));
     for (Index vertex = 0; vertex < graph.vertex_count(); ++vertex) {
       if (vertices_[vertex].height == kNone && !graph.neighbours(vertex).empty()) orient(vertex);
     }
@@ -62,8 +62,8 @@ class LeftRightTest {
   struct Vertex {
     Index height = kNone;               // in the search tree
     Index parent = kNone;               // the tree edge that leads here
-    std::size_t begin = 0, end = 0;     // its places in outgoing_
-    std::size_t next = 0;               // how many edges the search has done
+    Index begin = 0, end = 0;           // its places in outgoing_
+    Index next = 0;                     // how many edges the search has done
     Index left = kNone, right = kNone;  // half-edges next to which back edges arrive
   };
   struct Edge {
@@ -74,9 +74,10 @@ class LeftRightTest {
     Index lowest = kNone;  // back edge that returns to the low point
     Index below = kNone;   // back edge relative to which the side is given
     int side = 1;
-    std::size_t bottom = 0;  // height of the stack when the edge was entered
+    Index bottom = 0;  // height of the stack when the edge was entered
   };
 
+  Index degree(Index vertex) const { return static_cast<Index>(graph_.neighbours(vertex).size()); }
   Index target(Index edge) const {
     const auto& ends = graph_.edge(edge);
     return edges_[edge].source == ends.from ? ends.to : ends.from;
@@ -95,7 +96,7 @@ class LeftRightTest {
     while (!path_.empty()) {
       const Index v = path_.back();
       const auto near = graph_.neighbours(v);
-      if (vertices_[v].next == near.size()) {
+      if (vertices_[v].next == static_cast<Index>(near.size())) {
         path_.pop_back();
         const Index parent = vertices_[v].parent;
         if (parent != kNone) close(parent);
@@ -138,8 +139,9 @@ class LeftRightTest {
   void order_outgoing() {
     for (auto& vertex : vertices_) {
       vertex.next = 0;
-      const auto first = outgoing_.begin() + static_cast<std::ptrdiff_t>(vertex.begin);
-      const auto last = outgoing_.begin() + static_cast<std::ptrdiff_t>(vertex.end);
+      if (vertex.end - vertex.begin < 2) continue;
+      const auto first = outgoing_.begin() + vertex.begin;
+      const auto last = outgoing_.begin() + vertex.end;
       std::sort(first, last, [this](Index a, Index b) {
         return std::pair(edges_[a].nesting, a) < std::pair(edges_[b].nesting, b);
       });
@@ -160,7 +162,7 @@ class LeftRightTest {
         continue;
       }
       const Index e = outgoing_[vertex.begin + vertex.next];
-      edges_[e].bottom = stack_.size();
+      edges_[e].bottom = static_cast<Index>(stack_.size());
       if (is_tree(e)) {
         path_.push_back(target(e));
         continue;
@@ -200,7 +202,7 @@ class LeftRightTest {
   bool add_constraints(Index e, Index parent) {
     ConflictPair merged;
     // Return edges of e go to one side.
-    while (stack_.size() > edges_[e].bottom) {
+    while (static_cast<Index>(stack_.size()) > edges_[e].bottom) {
       ConflictPair top = pop();
       if (!top.left.empty()) std::swap(top.left, top.right);
       if (!top.left.empty()) return false;
@@ -310,7 +312,7 @@ class LeftRightTest {
   // The half-edge to the parent, then those that leave, in their order.
   void begin(Index v, HalfEdge first, PlanarEmbedding& drawing) {
     HalfEdge last = first;
-    for (std::size_t k = vertices_[v].begin; k < vertices_[v].end; ++k) {
+    for (Index k = vertices_[v].begin; k < vertices_[v].end; ++k) {
       const HalfEdge half = leaving(outgoing_[k]);
       if (last == PlanarEmbedding::kNone) {
         drawing.clockwise[half] = before_[half] = half;
