@@ -8,7 +8,6 @@ namespace {
 
 constexpr double kMuStep = 1.4;
 constexpr int kMostRounds = 200;
-constexpr double kNone = 1e-4;  // a weight that ends as none, or as that much less than a whole one
 // Convexity for more than a chi-squared of 10^4 widths gives false loops a hold on
 // the first rounds and true ones nothing.
 constexpr double kLeastMu = 1e-4;
@@ -28,7 +27,7 @@ struct Surrogate {
   // The original loss is reached, or nothing exceeds the width in the first place.
   bool done(const Eigen::VectorXd& weights) const {
     if (!truncated) return mu <= 1.0;
-    return ((weights.array() < kNone) || (weights.array() > 1.0 - kNone)).all();
+    return ((weights.array() < 1e-4) || (weights.array() > 1.0 - 1e-4)).all();
   }
 
   void sharpen() { mu = truncated ? mu * kMuStep : std::max(1.0, mu / kMuStep); }
@@ -41,15 +40,6 @@ struct Surrogate {
     return std::clamp(std::sqrt(width * mu * (mu + 1.0) / chi2) - mu, 0.0, 1.0);
   }
 };
-
-// Of much that contradicts even next to nothing is felt. Whether that was any.
-bool leaves_out_entirely(Eigen::VectorXd& weights) {
-  const Eigen::Array<bool, Eigen::Dynamic, 1> next_to_nothing =
-      weights.array() > 0.0 && weights.array() < kNone;
-  const bool any = next_to_nothing.any();
-  weights = next_to_nothing.select(0.0, weights);
-  return any;
-}
 
 double largest_of(const Eigen::VectorXd& chi2, const std::vector<bool>& robust) {
   double largest = 0.0;
@@ -98,10 +88,6 @@ MinimizeSummary minimize_graduated(NormalEquations<Pose>& equations,
     total.iterations += summary.iterations;
     if (surrogate.done(weights)) {
       total.status = summary.status;
-      if (truncated && leaves_out_entirely(weights)) {
-        total.iterations += minimize(equations, edge_cost, options, poses).iterations;
-        chi2 = equations.chi2(poses);
-      }
       break;
     }
     surrogate.sharpen();
