@@ -69,16 +69,14 @@ def run_again(method, step, command, work, stream, true):
 
 def errors_at(events, step):
     """Of the map, the first that was told after every so many poses, and the last."""
-    due, errors, last = step, [], None
-    for line in events.read_text(encoding="utf-8").splitlines():
-        event = json.loads(line)
-        if event["event"] != "error":
-            continue
-        last = event["ate"]
-        if event["poses"] >= due:
+    told = [json.loads(line) for line in events.read_text(encoding="utf-8").splitlines()]
+    told = [event for event in told if event["event"] == "error"]
+    due, errors = step, []
+    for event in told:
+        if event["poses"] >= due or event is told[-1]:
             due += step
-            errors.append(last)
-    return errors + ([last] if last is not None and errors[-1:] != [last] else [])
+            errors.append(event["ate"])
+    return errors
 
 
 def followed(step, command, work, stream, _):

@@ -154,12 +154,9 @@ void OnlineEngine<Pose>::search_everywhere(double budget) {
 // following up takes of what it may: so what is left lasts.
 template <class Pose>
 bool OnlineEngine<Pose>::is_following_due() const {
-  const auto seen = static_cast<Index>(map_->graph().constraints.size());
-  const auto& edges = log_.edges();
-  const bool news =
-      std::any_of(edges.begin() + seen, edges.end(), [](const auto& edge) { return !edge.step; });
-  const auto more = static_cast<double>(static_cast<Index>(edges.size()) - seen);
-  return news && more * following_credit() >= last_following_ * static_cast<double>(edges.size());
+  const Index seen = map_->graph().constraint_count();
+  const auto all = static_cast<Index>(rows_.size());
+  return last_loop_ >= seen && (all - seen) * following_credit() >= last_following_ * all;
 }
 
 // From where the last one stood, and from where a search from every start led higher. Once begun it

@@ -8,36 +8,25 @@
 namespace isotherm::slam::detail {
 namespace {
 
-// Of truncated least squares, which loops count and where these fit best; two or three are usual.
+// Of truncated least squares: which loops count, and where these fit best.
 constexpr int kMostTurns = 10;
 
-// Which of these loops lie within the width that truncated least squares have by default.
+// Which of these lie within the width that truncated least squares have by default.
 template <class Pose>
-std::vector<bool> fitting(const PoseGraph<Pose>& graph, const std::vector<Index>& loops,
+std::vector<bool> fitting(const std::vector<Constraint<Pose>>& loops,
                           const std::vector<Pose>& poses) {
   const double width = default_kernel_width(RobustKernel::gnc, Pose::kDof);
   std::vector<bool> fits;
-  for (const Index k : loops) {
-    const auto& [from, to, measured, information, line, link] = graph.constraints[k];
-    const typename Pose::Tangent r = (measured.inverse() * poses[from].inverse() * poses[to]).log();
-    fits.push_back(r.dot(information * r) <= width);
+  for (const auto& loop : loops) {
+    const typename Pose::Tangent r = residual(loop, poses[loop.from], poses[loop.to]);
+    fits.push_back(r.dot(loop.information * r) <= width);
   }
   return fits;
 }
 
-// Those that do not count are as if they were not there.
-template <class Pose>
-void count(const PoseGraph<Pose>& all, const std::vector<Index>& loops,
-           const std::vector<bool>& counts, PoseGraph<Pose>& part) {
-  for (std::size_t k = 0; k < loops.size(); ++k) {
-    auto& information = part.constraints[loops[k]].information;
-    information = all.constraints[loops[k]].information;
-    if (!counts[k]) information.setZero();
-  }
-}
-
 // Where odometry alone has led says little of how well loops fit: where all do by Huber's loss,
-// which a few false ones do not lead far astray, does.
+// which a few false ones do not lead far astray, does. Loops that do not count are as if they were
+// not there.
 template <class Pose>
 void fit(PoseGraph<Pose>& part, const EdgeRoles& roles) {
   OptimizeOptions options{.initialization = Initialization::file};
@@ -46,13 +35,18 @@ void fit(PoseGraph<Pose>& part, const EdgeRoles& roles) {
     part.poses = optimize(part, roles, options).poses;
     options.kernel = RobustKernel::none;
   }
-  const PoseGraph<Pose> all = part;
+  std::vector<Constraint<Pose>> loops;
+  for (const Index k : roles.candidates) loops.push_back(part.constraints[k]);
   std::vector<bool> counts;
   for (int turn = 0; turn < kMostTurns; ++turn) {
-    auto now = fitting(all, roles.candidates, part.poses);
+    auto now = fitting(loops, part.poses);
     if (turn > 0 && now == counts) return;
     counts = std::move(now);
-    count(all, roles.candidates, counts, part);
+    for (std::size_t k = 0; k < loops.size(); ++k) {
+      auto& information = part.constraints[roles.candidates[k]].information;
+      information = loops[k].information;
+      if (!counts[k]) information.setZero();
+    }
     part.poses = optimize(part, roles, options).poses;
   }
 }

@@ -78,7 +78,6 @@ TEST(CholmodFactor, SolvesAndCountsAsADenseSolverDoes) {
   EXPECT_THROW(CholmodFactor(shifted, FactorKind::supernodal), NumericalError);
 }
 
-// Every entry of L has its place, and joining adds few others.
 // A thread that CHOLMOD's OpenMP begins stays until the one that asked for it ends.
 TEST(CholmodFactor, BeginsNoThreads) {
   const std::filesystem::path tasks = "/proc/self/task";
@@ -95,6 +94,7 @@ TEST(CholmodFactor, BeginsNoThreads) {
   EXPECT_EQ(begun, 0);
 }
 
+// Every entry of L has its place, and joining adds few others.
 TEST(FindSupernodes, CoverTheFactor) {
   const SparseMatrix lower = random_grid(20);
   const auto order = fill_reducing_order(lower_triangle(lower));

@@ -32,7 +32,7 @@ class LeftRightTest {
     Index places = 0;
     for (Index vertex = 0; vertex < graph.vertex_count(); ++vertex) {
       vertices_[vertex].begin = vertices_[vertex].end = places;
-      places += degree(vertex);
+      places += static_cast<Index>(graph.neighbours(vertex).size());
     }
     outgoing_.resize(static_cast<std::size_t>(places));
     for (Index vertex = 0; vertex < graph.vertex_count(); ++vertex) {
@@ -77,7 +77,6 @@ class LeftRightTest {
     Index bottom = 0;  // height of the stack when the edge was entered
   };
 
-  Index degree(Index vertex) const { return static_cast<Index>(graph_.neighbours(vertex).size()); }
   Index target(Index edge) const {
     const auto& ends = graph_.edge(edge);
     return edges_[edge].source == ends.from ? ends.to : ends.from;

@@ -335,13 +335,13 @@ bool Climb<Pose>::accept_many_more(double gain) {
 template <class Pose>
 bool Climb<Pose>::accept_undecided() {
   const double least = 2.0 * log_odds_of(options_.significance);
-  Selection open;
+  Selection loops;
   for (std::size_t k = 0; k < now_.standings.size(); ++k) {
     if (!now_.accepted[k] && now_.standings[k].connected() && now_.standings[k].log_odds > least) {
-      open.push_back(static_cast<Index>(k));
+      loops.push_back(static_cast<Index>(k));
     }
   }
-  return try_all_as(open, true);
+  return try_all_as(loops, true);
 }
 
 // All runs of which a loop is not true beyond doubt: as long as the others of a run are accepted,
