@@ -1,6 +1,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -21,10 +22,12 @@ struct EvalOnline : OptionVerb<NoOptions> {
   std::string events;
   std::string labels;
   std::string steps;
+  bool even_odds = false;
 
   int run() {
     if (resolve_or_dump()) return kOk;
-    const auto log = read_event_log(events);
+    auto log = read_event_log(events);
+    if (even_odds) log.verdicts = decided_at_even_odds(std::move(log.verdicts));
     const auto metrics = evaluate_online(log.verdicts, read_labels(labels), log.edges);
     if (flags.json != "-" && steps != "-") write_text("-", to_text(metrics, log));
     if (!steps.empty()) write_text(steps, to_csv(metrics, log));
@@ -126,6 +129,9 @@ Verb add_eval_online(CLI::App& eval) {
       "online", "precision, recall and error through time; a positive is a kept loop");
   verb->add_option("events", online->events, "events written by follow (- for stdin)")->required();
   verb->add_option("labels", online->labels, "labels of the edges it followed")->required();
+  verb->add_flag("--even-odds", online->even_odds,
+                 "leave none ambiguous: what is likelier true than false counts as kept, "
+                 "the rest as pruned");
   online->flags.outputs.add(*verb, "--steps", online->steps,
                             "how things stood from each change on, as CSV (- for stdout)",
                             {".csv"});

@@ -20,6 +20,7 @@ struct Event {
   std::optional<std::int64_t> edge;
   std::optional<std::int64_t> edges;
   std::optional<double> ate;
+  std::optional<double> probability;
 };
 
 std::int64_t read_count(JsonReader& json) {
@@ -42,6 +43,8 @@ Event read_event(JsonReader& json) {
       event.verdict = json.string("a verdict");
     } else if (name == "ate") {
       event.ate = json.number("an error");
+    } else if (name == "probability" && !json.at_null()) {
+      event.probability = json.number("a probability");
     } else if (known != counts.end()) {
       *known->second = read_count(json);
     } else {
@@ -65,7 +68,7 @@ void take(const Event& event, const JsonReader& json, EventLog& log) {
   };
   if (event.kind == "verdict" || event.kind == "change") {
     log.verdicts.push_back({have(event.edge, "edge"), verdict_of(event.verdict, json),
-                            have(event.at, "at"), have(event.poses, "poses")});
+                            have(event.at, "at"), have(event.poses, "poses"), event.probability});
     log.edges = std::max(log.edges, log.verdicts.back().at);
   } else if (event.kind == "error") {
     log.errors.push_back(

@@ -81,6 +81,13 @@ double OnlineStep::precision() const { return share(kept_true, kept_false); }
 
 double OnlineStep::recall() const { return share(kept_true, missed); }
 
+std::vector<TimedVerdict> decided_at_even_odds(std::vector<TimedVerdict> verdicts) {
+  for (auto& told : verdicts) {
+    if (told.probability) told.verdict = *told.probability > 0.5 ? Verdict::keep : Verdict::prune;
+  }
+  return verdicts;
+}
+
 OnlineMetrics evaluate_online(const std::vector<TimedVerdict>& verdicts,
                               const std::vector<EdgeLabel>& labels, std::int64_t edges) {
   const auto label_of = labels_by_edge(labels);

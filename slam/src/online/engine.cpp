@@ -390,9 +390,14 @@ void OnlineEngine<Pose>::bring_up_to_date(PoseGraph<Pose>& graph) const {
   const Index judged_together = finished_ ? edges : map_->graph().constraint_count();
   std::vector<Use> uses;
   for (Index k = 0; k < edges; ++k) {
-    const Use as_loop = k < judged_together ? Use::loop : Use::loop_as_it_came;
-    const bool step = log_.edges()[k].step;
-    uses.push_back(step ? Use::step : is_accepted(k) ? as_loop : Use::none);
+    Use use;
+    if (log_.edges()[k].step) {
+      use.as = Use::As::step;
+    } else if (is_accepted(k)) {
+      use.as = Use::As::loop;
+      if (k >= judged_together) use.most_chi2 = outlook_->chi2_at_even_odds(k);
+    }
+    uses.push_back(use);
   }
   const auto& best = map_->best();
   const Accuracy<Pose> accuracy{best.scale.odometry * best.shapes.odometry,

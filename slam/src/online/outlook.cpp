@@ -153,6 +153,13 @@ Standing Outlook<Pose>::standing(Index edge) const {
 }
 
 template <class Pose>
+double Outlook<Pose>::chi2_at_even_odds(Index edge) const {
+  const Matrix Sigma = map_.best().scale.loops * covariance_of(log_.edges()[edge].measured);
+  const double density = log_normal<Pose>(Pose::Tangent::Zero(), Sigma);
+  return std::max(2.0 * (density - log_alternative(edge) + prior_), 0.0);
+}
+
+template <class Pose>
 typename Pose::Matrix Outlook<Pose>::covariance_of(const Constraint<Pose>& measured) const {
   return scaled<Pose>(covariance_from_information<Pose::kDof>(measured.information),
                       map_.best().shapes.loops);

@@ -21,6 +21,10 @@ class Outlook {
   /// Of an edge of the log, by its number: how it stands on the map.
   Standing standing(Index edge) const;
 
+  /// Of an edge that has come since: the squared length of its residual, by its own error, at which
+  /// it would be as likely false as true if the map were known.
+  double chi2_at_even_odds(Index edge) const;
+
   /// The log odds of any loop being true.
   double prior() const noexcept { return prior_; }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "isotherm/slam/graph/pose_graph.hpp"
@@ -14,12 +15,10 @@ struct Accuracy {
 };
 
 /// What a constraint counts for.
-enum class Use {
-  none,
-  step,
-  loop,            ///< judged together with the others
-  loop_as_it_came  ///< judged by what was known then: not used where all others contradict it
-                   ///< (truncated least squares)
+struct Use {
+  enum class As { none, step, loop } as = As::none;
+  /// Of its residual: beyond, it is left out (truncated least squares).
+  double most_chi2 = std::numeric_limits<double>::infinity();
 };
 
 /// Moves the poses of `graph`, which lie near, to where its constraints, one entry of `uses` each,

@@ -89,6 +89,9 @@ TEST_F(Follow, IsJudgedThroughTime) {
   EXPECT_EQ(
       result["right"].get<int>() + result["wrong"].get<int>() + result["ambiguous"].get<int>(), 45);
   EXPECT_GE(result["mean_precision"], 0.5);
+  const auto decided = Json::parse(run_ok("eval online e.jsonl in.csv --even-odds --json - -q"));
+  EXPECT_EQ(decided["ambiguous"], 0);
+  EXPECT_GE(decided["right"].get<int>(), result["right"].get<int>());
   const auto whole = Json::parse(run_ok("eval loops v.csv in.csv --json - -q"));
   EXPECT_EQ(result["ambiguous"], whole["ambiguous"]);
   EXPECT_GE(result["right"].get<int>(), whole["tp"].get<int>());

@@ -42,6 +42,15 @@ TEST(EvaluateOnline, HasPrecisionAndRecallFromStepToStep) {
   EXPECT_THAT(metrics.mean_recall, DoubleEq((1.0 + 1.0 + 0.5 + 1.0) / 4.0));
 }
 
+TEST(EvaluateOnline, KeepsAtEvenOddsWhatIsLikelierTrue) {
+  const auto decided = decided_at_even_odds({{1, Verdict::ambiguous, 1, 1, 0.6},
+                                             {2, Verdict::ambiguous, 2, 2, 0.4},
+                                             {3, Verdict::ambiguous, 3, 3, std::nullopt}});
+  EXPECT_EQ(decided[0].verdict, Verdict::keep);
+  EXPECT_EQ(decided[1].verdict, Verdict::prune);
+  EXPECT_EQ(decided[2].verdict, Verdict::ambiguous);
+}
+
 TEST(EvaluateOnline, CountsPosesUntilTheLastChangeOfLoopsThatEndRight) {
   const auto metrics = evaluate_online(kCourse, kLabels, 50);
   EXPECT_THAT(metrics.delays, ElementsAre(0, 8, 8));

@@ -14,6 +14,9 @@ namespace {
 using isotherm_test::random_loop_graph;
 using isotherm_test::worst_difference;
 
+// Less than one in a million true loops are that far off.
+constexpr double kMostChi2 = 40.0;
+
 template <class Pose>
 class PresentMapOf : public testing::Test {};
 using Poses = testing::Types<Pose2, Pose3>;
@@ -36,9 +39,9 @@ struct Contradicted {
     wrong.to = graph.vertex_count() / 2;
     wrong.T_from_to = Pose();
     graph.constraints.push_back(wrong);
-    uses.assign(graph.constraints.size(), Use::loop);
-    for (const Index k : edge_roles(graph).odometry) uses[k] = Use::step;
-    uses.back() = Use::loop_as_it_came;
+    uses.assign(graph.constraints.size(), {Use::As::loop});
+    for (const Index k : edge_roles(graph).odometry) uses[k].as = Use::As::step;
+    uses.back().most_chi2 = kMostChi2;
   }
 };
 
@@ -47,7 +50,7 @@ TYPED_TEST(PresentMapOf, IsNotBentByALoopThatTheOthersContradict) {
   const auto given = with.graph.poses;
   settle_poses(with.graph, with.uses, {});
   Contradicted<TypeParam> without;
-  without.uses.back() = Use::none;
+  without.uses.back().as = Use::As::none;
   settle_poses(without.graph, without.uses, {});
   EXPECT_GT(worst_difference(without.graph.poses, given), 1e-6);
   EXPECT_LT(worst_difference(with.graph.poses, without.graph.poses), 1e-6);
@@ -57,7 +60,7 @@ TYPED_TEST(PresentMapOf, IsNotBentByALoopThatTheOthersContradict) {
 TYPED_TEST(PresentMapOf, CountsAllLoopsThatWereJudgedTogether) {
   Contradicted<TypeParam> known;
   auto whole = known.graph;
-  known.uses.back() = Use::loop;
+  known.uses.back() = {Use::As::loop};
   settle_poses(known.graph, known.uses, {});
   const auto optimum = optimize(whole, edge_roles(whole), {.cost_tolerance = 1e-12}).poses;
   EXPECT_LT(worst_difference(known.graph.poses, optimum),
@@ -70,11 +73,11 @@ TYPED_TEST(PresentMapOf, FollowsLoopsThatCameTogetherAgainstOdometry) {
   Random random(7);
   const auto made = random_loop_graph<TypeParam>(random, 60, 40, 1.0, 1e8);
   auto graph = made.graph;
-  std::vector<Use> uses(graph.constraints.size(), Use::loop_as_it_came);
+  std::vector<Use> uses(graph.constraints.size(), {Use::As::loop, kMostChi2});
   typename TypeParam::Tangent drift = TypeParam::Tangent::Zero();
   drift[TypeParam::kDof - 1] = 0.03;
   for (const Index k : edge_roles(graph).odometry) {
-    uses[k] = Use::step;
+    uses[k] = {Use::As::step};
     auto& step = graph.constraints[k];
     step.T_from_to = step.T_from_to * TypeParam::exp(drift);
     step.information *= 1e-6;

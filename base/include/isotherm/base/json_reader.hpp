@@ -31,6 +31,7 @@ class JsonReader {
   /// Whether an array or an object comes next.
   bool at_array() { return peek() == '['; }
   bool at_object() { return peek() == '{'; }
+  bool at_null() { return peek() == 'n'; }
 
   /// Whether nothing but blanks is left. Values may follow each other, as in a log of a line each.
   bool at_end();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "isotherm/slam/evaluate/labels.hpp"
@@ -14,7 +15,12 @@ struct TimedVerdict {
   spectral::Verdict verdict = spectral::Verdict::ambiguous;
   std::int64_t at = 0;     ///< number of the edge that brought it; that of all edges at the end
   std::int64_t poses = 0;  ///< how many had come by then
+  std::optional<double> probability;  ///< of the loop being true, where that was told
 };
+
+/// As if there were no third verdict, for comparison with methods that have none: a loop whose
+/// probability is known is kept where it is likelier true than false, and else pruned.
+std::vector<TimedVerdict> decided_at_even_odds(std::vector<TimedVerdict> verdicts);
 
 /// How the loops that had come stood from one edge on. A positive is a loop that is kept.
 struct OnlineStep {
