@@ -53,7 +53,7 @@ def counted(verdicts, labels):
     labels = {label["edge"]: label["label"] for label in labels}
     counts = {f"{true} {said}": 0 for true in ("true", "false")
               for said in ("kept", "pruned", "ambiguous")}
-    bins = [[0, 0] for _ in range(len(BINS) + 1)]  # loops, of these true
+    bins = [[0, 0, 0.0] for _ in range(len(BINS) + 1)]  # loops, of these true, and as stated
     for verdict in verdicts:
         if labels[verdict["edge"]] == "ignore":  # false, but what it says is true
             continue
@@ -65,6 +65,7 @@ def counted(verdicts, labels):
             own = bins[sum(share >= edge for edge in BINS)]
             own[0] += 1
             own[1] += true
+            own[2] += share
     return counts | {"bins": bins}
 
 
@@ -123,13 +124,17 @@ def page(rows):
 
 def calibration(rows):
     lines = ["", "## Stated probability against share true", "",
-             "| probability | loops | true | share |", "|---|---|---|---|"]
+             "*odds* are those of the share true against those of the mean that was stated, where some are",
+             "true and some false.", "",
+             "| probability | loops | stated, mean | true | share | odds |", "|---|---|---|---|---|---|"]
     names = [f"below {BINS[0]:g}", *(f"{a:.10g} to {b:.10g}" for a, b in zip(BINS, BINS[1:])),
              f"from {BINS[-1]:.10g}"]
     for k, name in enumerate(names):
-        loops, true = (sum(row["bins"][k][part] for row in rows) for part in (0, 1))
-        if loops:
-            lines.append(f"| {name} | {loops} | {true} | {true / loops:.6f} |")
+        loops, true, stated = (sum(row["bins"][k][part] for row in rows) for part in range(3))
+        if not loops:
+            continue
+        odds = f"{true / (loops - true) * (loops - stated) / stated:.2g}" if 0 < true < loops else ""
+        lines.append(f"| {name} | {loops} | {stated / loops:.3g} | {true} | {true / loops:.6f} | {odds} |")
     return lines
 
 

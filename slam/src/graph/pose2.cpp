@@ -70,6 +70,10 @@ Pose2::Tangent Pose2::log() const {
   return xi;
 }
 
+Eigen::Matrix<double, 1, 1> Pose2::rotation_log() const {
+  return Eigen::Matrix<double, 1, 1>(wrap_angle(angle_));
+}
+
 Pose2::Matrix Pose2::adjoint() const {
   Matrix ad = Matrix::Identity();
   ad.topLeftCorner<2, 2>() = rotation_matrix();

@@ -114,10 +114,12 @@ Pose3 Pose3::exp(const Tangent& xi) {
 
 Pose3::Tangent Pose3::log() const {
   Tangent xi;
-  const Eigen::Vector3d phi = rotation_vector(rotation_);
+  const Eigen::Vector3d phi = rotation_log();
   xi << rotation_left_jacobian(phi).inverse() * translation_, phi;
   return xi;
 }
+
+Eigen::Vector3d Pose3::rotation_log() const { return rotation_vector(rotation_); }
 
 Pose3::Matrix Pose3::adjoint() const {
   const Eigen::Matrix3d r = rotation_matrix();

@@ -64,11 +64,12 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   find_nearness(now);
   if (ceiling(now) < least) return false;
   predict(now);
-  weigh(now);
-  add_prior(now);
+  find_redundancy(now);
   now.layout = estimate_.layout();
   if (pace_) pace_(kCovarianceWork * estimate_.work());
   now.evidence = evidence(now);
+  if (now.evidence < least) return false;
+  weigh(now);
   return true;
 }
 
@@ -77,8 +78,8 @@ void Assessment<Pose>::weigh_at(Explanation<Pose>& now, const CovarianceScale& s
   for (auto& covariance : found_.covariances) covariance *= scale.odometry / now.scale.odometry;
   now.scale = scale;
   found_.mixture = now.mixture();
+  find_redundancy(now);
   weigh(now);
-  add_prior(now);
 }
 
 template <class Pose>
@@ -249,11 +250,11 @@ void Assessment<Pose>::solve(Explanation<Pose>& now, const std::vector<Index>& l
 
 template <class Pose>
 void Assessment<Pose>::weigh(Explanation<Pose>& now) {
-  find_redundancy(now);
   parallel_for_each(now.accepted.size(), threads_, [&](std::size_t k) {
     const auto loop = static_cast<Index>(k);
     now.standings[k] = now.accepted[k] ? accepted_standing(now, loop) : other_standing(now, loop);
   });
+  add_prior(now);
 }
 
 template <class Pose>

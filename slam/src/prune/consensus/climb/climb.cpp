@@ -390,7 +390,7 @@ std::size_t Climb<Pose>::accepted_count() const {
 // Whether the evidence reaches `least`.
 template <class Pose>
 bool Climb<Pose>::assess(double least) {
-  if (!assessment_.assess(now_, least) || now_.evidence < least) return false;
+  if (!assessment_.assess(now_, least)) return false;
   failed_ = {};
   if (now_.evidence > best_.evidence) best_ = now_;
   passed_.push_back({now_.accepted, now_.scale, now_.evidence, peaks_.size()});

@@ -137,8 +137,8 @@ void NearDensity<Pose>::find_places(const ReducedGraph<Pose>& graph) {
 // From the median.
 template <class Pose>
 typename Pose::Tangent NearDensity<Pose>::offset(const Pose& T) const {
-  Tangent d = (center_inverse_ * T).log();
-  d.template head<Pose::kDim>() = T.translation() - center_;
+  Tangent d;
+  d << T.translation() - center_, (center_inverse_ * T).rotation_log();
   return d;
 }
 
@@ -147,29 +147,47 @@ double NearDensity<Pose>::Kernel::log_peak() const {
   return -deviation.array().log().sum() - 0.5 * Pose::kDof * kLog2Pi;
 }
 
+template <class Pose>
+double NearDensity<Pose>::Kernel::over_peak(const Tangent& off) const {
+  return std::exp(-0.5 * off.cwiseQuotient(deviation).squaredNorm());
+}
+
+template <class Pose>
+double NearDensity<Pose>::Kernel::squared_reach() const {
+  const double reach = kReach * deviation.template head<Pose::kDim>().maxCoeff();
+  return reach * reach;
+}
+
 // Poses near each other are rare on a large map: they are looked for, not drawn, from every
 // `stride`th anchor to later places.
 template <class Pose>
-void NearDensity<Pose>::count_near(const Kernel& kernel, const Places& on, std::size_t first,
-                                   std::size_t stride, Count& count) const {
-  const double reach = kReach * kernel.deviation.template head<Pose::kDim>().maxCoeff();
+void NearDensity<Pose>::count_near(const Places& on, std::size_t first, std::size_t stride,
+                                   std::array<Count, 2>& counts) const {
   const nanoflann::SearchParams unsorted(0, 0.0F, false);
   std::vector<std::pair<Eigen::Index, double>> near;
-  std::size_t weighed = 0;
+  std::array<std::size_t, 2> weighed{};
   for (std::size_t next = first; next < anchors_.size(); next += stride) {
-    if (weighed > kMostWeighed / stride) break;
     const std::size_t a = anchors_[next];
+    std::array<double, 2> reach{};  // squared; none where enough have been weighed
+    for (std::size_t k = 0; k < reach.size(); ++k) {
+      if (weighed[k] > kMostWeighed / stride) continue;
+      reach[k] = kernels_[k].squared_reach();
+      count_pairs(a, counts[k].pairs);
+    }
+    const double farthest = std::ranges::max(reach);
+    if (farthest == 0.0) break;
     const typename Pose::Translation middle = on.poses[a] * center_;
-    on.tree.index->radiusSearch(middle.data(), reach * reach, near, unsorted);
-    weighed += near.size();
+    on.tree.index->radiusSearch(middle.data(), farthest, near, unsorted);
+    const Pose T_a_world = on.poses[a].inverse();
     for (const auto& [found, square] : near) {
+      for (std::size_t k = 0; k < reach.size(); ++k) weighed[k] += square < reach[k];
       const auto b = static_cast<std::size_t>(found);
       if (b <= a) continue;
-      const Tangent off = offset(on.poses[a].inverse() * on.poses[b]);
-      count.near[class_of(a, b)] +=
-          std::exp(-0.5 * off.cwiseQuotient(kernel.deviation).squaredNorm());
+      const Tangent off = offset(T_a_world * on.poses[b]);
+      for (std::size_t k = 0; k < reach.size(); ++k) {
+        if (square < reach[k]) counts[k].near[class_of(a, b)] += kernels_[k].over_peak(off);
+      }
     }
-    count_pairs(a, count.pairs);
   }
 }
 
@@ -185,9 +203,7 @@ std::array<double, kProposalClasses> NearDensity<Pose>::log_mean(
   }
   for (std::size_t m = 0; m < maps.size(); ++m) {
     const Places on(places_, maps[m]);
-    for (std::size_t k = 0; k < counts.size(); ++k) {
-      count_near(kernels_[k], on, m, maps.size(), counts[k]);
-    }
+    count_near(on, m, maps.size(), counts);
   }
   std::array<double, kProposalClasses> result;
   for (std::size_t c = 0; c < kProposalClasses; ++c) {

@@ -52,6 +52,8 @@ class NearDensity {
   struct Kernel {
     Tangent deviation;
     double log_peak() const;
+    double over_peak(const Tangent& off) const;
+    double squared_reach() const;  ///< of translation
   };
 
   /// Of each class of pairs: a kernel over its peak, summed over those that are near, and how many
@@ -68,8 +70,8 @@ class NearDensity {
   Tangent offset(const Pose& T) const;
   std::size_t class_of(std::size_t from, std::size_t to) const;
   void count_pairs(std::size_t anchor, std::array<double, kProposalClasses>& pairs) const;
-  void count_near(const Kernel& kernel, const Places& on, std::size_t first, std::size_t stride,
-                  Count& count) const;
+  void count_near(const Places& on, std::size_t first, std::size_t stride,
+                  std::array<Count, 2>& counts) const;
 
   Pose center_inverse_;
   typename Pose::Translation center_;
