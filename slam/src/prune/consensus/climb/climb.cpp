@@ -12,10 +12,6 @@
 namespace isotherm::slam::detail {
 namespace {
 
-// Nats that a lesson gains at least until scales are the same to the digits that verdicts show:
-// what is left is tens of times as much.
-constexpr double kRefined = 1e-4;
-
 bool is_part(const std::vector<bool>& part, const std::vector<bool>& whole) {
   for (std::size_t k = 0; k < part.size(); ++k) {
     if (part[k] && !whole[k]) return false;
@@ -132,14 +128,6 @@ Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
   now_.accepted = accepted;
   assess();
   while (learn_more_than(0.0) || weigh_anew()) {
-  }
-  return now_;
-}
-
-template <class Pose>
-Explanation<Pose> Climb<Pose>::refined(const Explanation<Pose>& found) {
-  stand_at(found);
-  while (learn_more_than(0.0, kRefined)) {
   }
   return now_;
 }
@@ -483,15 +471,15 @@ bool Climb<Pose>::try_all_as(const Selection& loops, bool accepted) {
 
 // Whether there was anything to learn that gains more than this.
 template <class Pose>
-bool Climb<Pose>::learn_more_than(double gain, double enough) {
+bool Climb<Pose>::learn_more_than(double gain) {
   if (!options_.calibrate) return false;
   learnt_from_ = std::max<std::size_t>(accepted_count(), 1);
-  const double least = std::max(gain, enough);
+  const double least = std::max(gain, kBetter);
   for (const Trial trial : {Trial::lesson, Trial::lesson_of_scales}) {
     if (failed_[trial]) continue;
     const Lesson<Pose> found = learn(assessment_, now_, trial == Trial::lesson_of_scales);
     if (found.gain <= least) continue;
-    if (try_with(scales_of(found), enough)) return true;
+    if (try_with(scales_of(found))) return true;
     failed_[trial] = true;
     if (found.shapes.is_about(now_.shapes)) failed_[Trial::lesson_of_scales] = true;
   }

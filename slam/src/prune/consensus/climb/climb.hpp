@@ -60,9 +60,6 @@ class Climb {
   /// What explains best that exactly these loops are true, from `start`.
   Explanation<Pose> settled_on(const std::vector<bool>& accepted, const CovarianceScale& start);
 
-  /// The same with scales learnt to the last digits that matter.
-  Explanation<Pose> refined(const Explanation<Pose>& found);
-
   /// Nothing accepted, the covariances as stated.
   const Explanation<Pose>& nothing();
 
@@ -129,7 +126,7 @@ class Climb {
   Group next_batch() const;
   void accept(const Selection& loops);
   bool try_all_as(const Selection& loops, bool accepted);
-  bool learn_more_than(double gain, double enough = kBetter);
+  bool learn_more_than(double gain);
   bool once(Trial trial, const std::function<bool()>& move);
   bool weigh_anew();
   bool weigh_by_others();

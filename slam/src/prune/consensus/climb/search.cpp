@@ -62,24 +62,18 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole, bool soon) {
   return standpoints;
 }
 
-template <class Pose>
-const Explanation<Pose>& best_of(const std::vector<Explanation<Pose>>& found) {
-  return *std::ranges::max_element(found, {}, &Explanation<Pose>::evidence);
-}
-
 // Scales of the loops that were found may have other peaks: sought from each start, all loops
 // known; of few loops, which leave scales uncertain, once more by climbs that no other loops or
 // peaks lead astray.
 template <class Pose>
 void climb_from_the_best(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
-  const Explanation<Pose> best = best_of(found);
+  const Explanation<Pose> best = *std::ranges::max_element(found, {}, &Explanation<Pose>::evidence);
   const bool few = accepted_by(best) < kLeastSample;
   Climb<Pose> afresh = climb.on(climb.objective());
   climb_from_each_start(true, [&](const CovarianceScale& scale) {
     found.push_back(climb.from(best, scale));
     if (few) found.push_back(afresh.settled_on(best.accepted, scale));
   });
-  if (few) found.push_back(climb.refined(best_of(found)));
 }
 
 }  // namespace

@@ -3,20 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <utility>
 
 #include "prune/consensus/constants.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
 
-constexpr double prior_loops(std::size_t scale) {
-  return scale == 0 ? kLoopsBefore : kLoopsBefore / (kScaleCount - 1);
-}
-
-double relative_variance(std::size_t scale) {
-  return std::pow(kScaleStep, static_cast<double>(scale));
-}
+constexpr double kWorst = kScaleStep * kScaleStep;
+constexpr double kOther = kLoopsBefore / 3.0;
+constexpr ByScale kPriorLoops = {kLoopsBefore, kOther, kOther, kOther};
 
 // log (x (x + 1) ... (x + count - 1)), and between whole counts their mean: of all distributions of
 // a count with this mean, that has the least.
@@ -27,15 +22,6 @@ double log_rising(double x, double count) {
 
 double sum_of(const ByScale& loops) { return std::accumulate(loops.begin(), loops.end(), 0.0); }
 
-// Loops of a scale but the stated one called of another.
-template <class Renamed>
-ScaleShares renamed(const ScaleShares& shares, const Renamed& name) {
-  ScaleShares next;
-  for (std::size_t j = 0; j <= kWorst; ++j) next.loops[name(j)] += shares.loops[j];
-  next.loops[kAsStated] = shares.loops[kAsStated];
-  return next;
-}
-
 }  // namespace
 
 void ScaleShares::add(const ErrorScale& found) {
@@ -43,10 +29,10 @@ void ScaleShares::add(const ErrorScale& found) {
 }
 
 double ScaleShares::log_evidence() const {
-  constexpr double before = 2.0 * kLoopsBefore;
+  const double before = sum_of(kPriorLoops);
   double log_probability = std::lgamma(before) - std::lgamma(before + sum_of(loops));
   for (std::size_t j = 0; j < kScaleCount; ++j) {
-    log_probability += log_rising(prior_loops(j), loops[j]);
+    log_probability += log_rising(kPriorLoops[j], loops[j]);
   }
   return log_probability;
 }
@@ -56,33 +42,31 @@ bool are_of_different_scales(double factor, double other) {
 }
 
 ScaleShift wider_most(const ScaleShares& shares) {
-  return {kScaleStep, renamed(shares, [](std::size_t j) { return j == 0 ? j : j - 1; })};
+  const auto& [most, worse, worst, stated] = shares.loops;
+  return {kScaleStep, {{most + worse, worst, 0.0, stated}}};
 }
 
 ScaleShift sharper_most(const ScaleShares& shares) {
-  ScaleShares next = renamed(shares, [](std::size_t j) { return std::min(j + 1, kWorst); });
-  next.loops[0] = 0.5 * shares.loops[0];
-  next.loops[1] -= next.loops[0];
-  return {1.0 / kScaleStep, next};
+  const auto& [most, worse, worst, stated] = shares.loops;
+  return {1.0 / kScaleStep, {{0.5 * most, 0.5 * most, worse + worst, stated}}};
 }
 
 ScaleShift all_as_worst(const ScaleShares& shares) {
-  return {relative_variance(kWorst), renamed(shares, [](std::size_t) { return std::size_t{0}; })};
+  const auto& [most, worse, worst, stated] = shares.loops;
+  return {kWorst, {{most + worse + worst, 0.0, 0.0, stated}}};
 }
 
 // What the file states is a scale of its own only beyond the worst of the others.
 ScaleMixture expected_mixture(double scale, const ScaleShares& shares, double sharpest) {
-  ScaleMixture mixture{.scale = scale};
-  ByScale expected = shares.loops;
-  for (std::size_t j = 0; j < kScaleCount; ++j) {
-    mixture.relative[j] = j == kAsStated ? 1.0 / scale : relative_variance(j);
-    expected[j] += prior_loops(j);
-  }
-  const bool nearer = scale * sharpest * relative_variance(kWorst) >= 1.0;
-  if (nearer) expected[kWorst] += std::exchange(expected[kAsStated], 0.0);
+  ScaleMixture mixture{.scale = scale, .relative = {1.0, kScaleStep, kWorst, 1.0 / scale}};
+  ByScale expected = kPriorLoops;
+  for (std::size_t j = 0; j < kScaleCount; ++j) expected[j] += shares.loops[j];
   const double all = sum_of(expected);
   for (std::size_t j = 0; j < kScaleCount; ++j) mixture.log_share[j] = std::log(expected[j] / all);
-  if (nearer) mixture.log_share[kAsStated] = kNever;
+  if (scale * sharpest * kWorst >= 1.0) {
+    mixture.log_share[2] = std::log((expected[2] + expected[3]) / all);
+    mixture.log_share[3] = kNever;
+  }
   return mixture;
 }
 

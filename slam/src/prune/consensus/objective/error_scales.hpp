@@ -5,13 +5,11 @@
 
 namespace isotherm::slam::detail {
 
-/// How accurate a loop is: as most are, or less, by kScaleStep in the variance, its square, and so
-/// on to an error nine times as large, or as the file states where that is less still in a
-/// coordinate. Against most first, so that the units of the file's information play next to no
-/// part.
-inline constexpr std::size_t kScaleCount = 6;
-inline constexpr std::size_t kAsStated = kScaleCount - 1;
-inline constexpr std::size_t kWorst = kAsStated - 1;
+/// How accurate a loop is: as most are, or less, by three or nine times in the variance, or as the
+/// file states where that is less still in a coordinate. Against most first, so that the units of
+/// the file's information play next to no part.
+inline constexpr std::size_t kScaleCount = 4;
+inline constexpr std::size_t kAsStated = 3;
 using ByScale = std::array<double, kScaleCount>;
 
 inline constexpr double kNever = -1e9;  ///< log of no probability
