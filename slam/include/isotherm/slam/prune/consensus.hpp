@@ -24,7 +24,7 @@ struct ConsensusOptions {
   /// A loop is pruned if it is true with a probability below this one, and kept if it is false
   /// with a probability below it; in (0, 0.5). Where fewer than five are found true none
   /// is pruned, nor one whose ends nothing else joins.
-  double significance = 0.05;
+  double significance = 0.01;
   /// Loops whose ends lie within this many vertices of each other, at both ends, can be one
   /// run, which is accepted as a whole; > 0.
   Index window = 20;
