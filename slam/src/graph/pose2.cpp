@@ -64,7 +64,7 @@ Pose2 Pose2::exp(const Tangent& xi) {
 }
 
 Pose2::Tangent Pose2::log() const {
-  const double t = wrap_angle(angle_);
+  const double t = rotation_log()[0];
   Tangent xi;
   xi << translation_map(t).inverse() * translation_, t;
   return xi;

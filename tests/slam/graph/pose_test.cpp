@@ -66,6 +66,14 @@ TYPED_TEST(PoseLaws, LogInvertsExpAtEveryAngle) {
   }
 }
 
+TYPED_TEST(PoseLaws, RotationLogIsTheLastPartOfLog) {
+  using Pose = TypeParam;
+  for (const double angle : this->kAngles) {
+    const Pose T = Pose::exp(random_tangent<Pose>(this->random, angle));
+    EXPECT_EQ(T.rotation_log(), (T.log().template tail<Pose::kDof - Pose::kDim>())) << angle;
+  }
+}
+
 TYPED_TEST(PoseLaws, ExpIsAOneParameterGroup) {
   using Pose = TypeParam;
   for (const double angle : this->kAngles) {

@@ -28,7 +28,7 @@ class JsonReader {
   /// Calls `item` before each value of the array that comes next; it must read the value.
   void array(std::string_view what, const std::function<void()>& item);
 
-  /// Whether an array or an object comes next.
+  /// Whether an array, an object or null comes next.
   bool at_array() { return peek() == '['; }
   bool at_object() { return peek() == '{'; }
   bool at_null() { return peek() == 'n'; }

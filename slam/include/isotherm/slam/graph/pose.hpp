@@ -44,7 +44,7 @@ class Pose2 {
 
   static Pose2 exp(const Tangent& xi);
   Tangent log() const;
-  /// Its last part.
+  /// The rotation's, which is the last part of log().
   Eigen::Matrix<double, kDof - kDim, 1> rotation_log() const;
 
   /// Ad with T exp(xi) = exp(Ad xi) T.
@@ -90,7 +90,7 @@ class Pose3 {
   static Pose3 exp(const Tangent& xi);
   /// Near a half turn the axis is defined up to sign; either is returned.
   Tangent log() const;
-  /// Its last part.
+  /// The rotation's, which is the last part of log().
   Eigen::Matrix<double, kDof - kDim, 1> rotation_log() const;
 
   /// Ad with T exp(xi) = exp(Ad xi) T.

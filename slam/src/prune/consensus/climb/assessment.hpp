@@ -38,7 +38,7 @@ class Assessment {
   };
   const NearnessFound& nearness_found() const noexcept { return nearness_found_; }
 
-  /// Sets the weights, the layout and the evidence of `now`, or gives up where that cannot reach
+  /// Sets the weights, the layout and the evidence of `now`, or gives up where that does not reach
   /// `least`: whether it went to the end.
   /// @throws NumericalError if the normal equations break down
   bool assess(Explanation<Pose>& now, double least = -std::numeric_limits<double>::infinity());

@@ -94,7 +94,7 @@ void NearDensity<Pose>::fit(const ReducedGraph<Pose>& graph) {
     center_[d] = median_over([d](const auto& m) { return m.T.translation()[d]; });
   }
   for (int d = Pose::kDim; d < Pose::kDof; ++d) {
-    turn[d] = median_over([d](const auto& m) { return m.T.log()[d]; });
+    turn[d] = median_over([d](const auto& m) { return m.T.rotation_log()[d - Pose::kDim]; });
   }
   center_inverse_ = Pose::exp(turn).inverse();
   auto& [alike, near] = kernels_;
