@@ -46,6 +46,7 @@ CONSTANTS = [
              "deviation of the log of a factor on covariances: ten in the error", (2.3, 9.2)),
     Constant("kScaleStep", "3", "of variances, from one kind of loop to the next", (2, 10)),
     Constant("kLoopsBefore", "1", "loops of either kind that count as seen before any is", (0.5, 4)),
+    Constant("kTailDof", "4", "degrees of freedom of Student's t of what loops measure", (2, 8)),
     Constant("kReach", "3.5", "deviations to which a kernel of near pairs reaches", (2, 7)),
     Constant("kFewLoops", "5", "loops of which none is pruned if there are fewer", (0, 20)),
     Constant("kLeastSample", "200", "loops that a sample holds at least", (20, 1e9)),

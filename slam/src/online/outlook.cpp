@@ -139,11 +139,17 @@ Standing Outlook<Pose>::standing(Index edge) const {
   if (path) {
     const typename Pose::Tangent r = (measured.T_from_to.inverse() * path->T).log();
     const Matrix J = residual_jacobian<Pose>(r);
-    const auto gain = loop_gain<Pose>({r, J * path->covariance * J.transpose()}, {learnt, stated},
-                                      assessment.findings().mixture,
+    const Belief<Pose> others{r, J * path->covariance * J.transpose()};
+    const auto gain = loop_gain<Pose>(others, {learnt, stated}, assessment.findings().mixture,
                                       map_.objective().scale_deviation(best.redundancy));
     standing.chi2 = gain.chi2;
     density = gain.log_density;
+    if (!is_copied(edge)) {
+      const Matrix Omega = gain.weight.learnt / best.scale.loops * learnt.inverse() +
+                           gain.weight.stated * measured.information;
+      density += map_.objective().near_density().log_nearer(
+          measured.T_from_to, residual_with(others, Omega), from <= to);
+    }
   } else {
     standing.parts.second = 1;
   }

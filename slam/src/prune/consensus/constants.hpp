@@ -24,6 +24,10 @@ inline constexpr double kScaleStep = 3.0;
 /// share of either nothing is known (a uniform distribution).
 inline constexpr double kLoopsBefore = 1.0;
 
+/// Degrees of freedom of Student's t of what loops measure: heavy tails, of finite variance (Lange,
+/// Little and Taylor, Robust Statistical Modeling Using the t Distribution, 1989, section 5).
+inline constexpr double kTailDof = 4.0;
+
 /// Deviations to which the kernel of near pairs reaches: beyond, it is below .003 of its peak.
 inline constexpr double kReach = 3.5;
 

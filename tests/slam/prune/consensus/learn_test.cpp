@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <Eigen/Cholesky>
 
 #include "isotherm/base/random.hpp"
 #include "prune/consensus/objective/scale_prior.hpp"
@@ -66,6 +67,29 @@ TYPED_TEST(LessonOf, ScalesOfCoordinatesAreWhereTheGradientIsZero) {
   const Tangent gradient =
       0.5 * (fitted - now.redundancy.odometry) - prior_precision<Tangent>() * logs;
   EXPECT_LT(gradient.cwiseAbs().maxCoeff(), 1e-6 * now.redundancy.odometry.maxCoeff());
+}
+
+// Loops that are far off would have odometry err more than its even steps vary.
+TYPED_TEST(LessonOf, OdometryErrsNoMoreThanItsStepsVary) {
+  using Pose = TypeParam;
+  const auto roles = edge_roles(this->graph_);
+  typename Pose::Tangent ahead = Pose::Tangent::Zero();
+  ahead[0] = 0.5;
+  for (const Index k : roles.odometry) {
+    auto& step = this->graph_.constraints[k];
+    const Eigen::LLT<typename Pose::Matrix> root(step.information);
+    const typename Pose::Tangent error =
+        root.matrixU().solve(isotherm_test::random_tangent<Pose>(this->random_, 1.0));
+    step.T_from_to = Pose::exp(ahead) * Pose::exp(error);
+  }
+  for (const bool same_shapes : {false, true}) {
+    const Objective<Pose> objective(this->graph_, roles, 20);
+    Assessment<Pose> assessment(objective);
+    const auto now = this->assess(assessment, {1.0, 1.0}, {{60.0, 0.0, 0.0, 0.0}});
+    const auto lesson = learn(assessment, now, same_shapes);
+    const typename Pose::Tangent logs = log_scales(lesson.scale.odometry, lesson.shapes.odometry);
+    EXPECT_NEAR((logs - objective.most_odometry()).maxCoeff(), 0.0, 1e-9) << "as far as they may";
+  }
 }
 
 // As measured, with the map and odometry where they go then.

@@ -286,7 +286,10 @@ Standing Assessment<Pose>::accepted_standing(const Explanation<Pose>& now, Index
       loop_gain(others, own_error(loop), found_.mixture, objective_.scale_deviation(told));
   // Alone it would join parts that lie anywhere on the map.
   const double density = std::max(gain.log_density, -objective_.log_volume() - 0.5 * gain.chi2);
-  return {.chi2 = gain.chi2, .evidence = density - log_alternative(loop), .weight = gain.weight};
+  const double nearer = objective_.log_nearer(loop, estimate_.residual(graph().loops[loop]));
+  return {.chi2 = gain.chi2,
+          .evidence = density + nearer - log_alternative(loop),
+          .weight = gain.weight};
 }
 
 template <class Pose>
@@ -295,10 +298,12 @@ Standing Assessment<Pose>::other_standing(const Explanation<Pose>& now, Index lo
   Standing standing{.parts = estimate_.parts(link)};
   double density = -objective_.log_volume();
   if (standing.connected()) {
-    const auto gain = loop_gain(belief(loop), own_error(loop), found_.mixture,
+    const auto others = belief(loop);
+    const auto gain = loop_gain(others, own_error(loop), found_.mixture,
                                 objective_.scale_deviation(now.redundancy));
+    const Matrix Omega = objective_.information(now, *found_.graph, loop, gain.weight);
     standing.chi2 = gain.chi2;
-    density = gain.log_density;
+    density = gain.log_density + objective_.log_nearer(loop, residual_with(others, Omega));
   }
   standing.evidence = density - log_alternative(loop);
   return standing;

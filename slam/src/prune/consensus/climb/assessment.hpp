@@ -84,6 +84,11 @@ class Assessment {
   /// diag(I - Omega P), Omega its mean information, P the residual's covariance.
   typename Pose::Tangent redundancy(const Explanation<Pose>& now, Index loop) const;
 
+  /// See Objective.
+  const typename Pose::Tangent& most_odometry() const noexcept {
+    return objective_.most_odometry();
+  }
+
   /// log of the density that a loop's is held against.
   double log_alternative(Index loop) const {
     return objective_.log_alternative(loop, found_.near, found_.mixture.scale);

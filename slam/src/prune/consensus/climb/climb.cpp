@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "isotherm/base/error.hpp"
 #include "prune/consensus/climb/groups.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
+#include "prune/consensus/objective/scale_prior.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -52,7 +54,7 @@ Climb<Pose>::Climb(const Objective<Pose>& objective, ConsensusOptions options, R
 
 template <class Pose>
 Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
-  start(scale);
+  start(unlearnt<Pose>(std::vector<bool>(loop_count()), scale));
   return climb();
 }
 
@@ -122,7 +124,7 @@ void Climb<Pose>::stand_at(const Explanation<Pose>& found) {
 template <class Pose>
 Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
                                           const CovarianceScale& start_scale) {
-  start(start_scale);
+  start(unlearnt<Pose>(std::vector<bool>(loop_count()), start_scale));
   for (std::size_t k = 0; k < accepted.size(); ++k) dropped_[k] = !accepted[k];
   grow();
   now_.accepted = accepted;
@@ -134,13 +136,19 @@ Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
 
 template <class Pose>
 const Explanation<Pose>& Climb<Pose>::nothing() {
-  if (!nothing_) start({});
+  if (!nothing_) {
+    auto none = unlearnt<Pose>(std::vector<bool>(loop_count()), {});
+    std::tie(none.scale.odometry, none.shapes.odometry) =
+        scale_and_shape<typename Pose::Tangent>(objective_.most_odometry().cwiseMin(0.0));
+    start(std::move(none));
+    nothing_ = now_;
+  }
   return *nothing_;
 }
 
 template <class Pose>
 std::vector<double> Climb<Pose>::first_gains(const std::vector<CovarianceScale>& scales) {
-  start({});
+  start(unlearnt<Pose>(std::vector<bool>(loop_count()), {}));
   std::vector<double> gains;
   for (const auto& scale : scales) {
     assessment_.weigh_at(now_, scale);
@@ -196,11 +204,10 @@ double Climb<Pose>::summit() const {
 }
 
 template <class Pose>
-void Climb<Pose>::start(const CovarianceScale& scale) {
-  now_ = unlearnt<Pose>(std::vector<bool>(objective_.stated().reduced.loops.size()), scale);
+void Climb<Pose>::start(Explanation<Pose> explanation) {
+  now_ = std::move(explanation);
   assessment_.start_over();
   begin();
-  if (scale == CovarianceScale{}) nothing_ = now_;
 }
 
 template <class Pose>

@@ -60,7 +60,7 @@ class Climb {
   /// What explains best that exactly these loops are true, from `start`.
   Explanation<Pose> settled_on(const std::vector<bool>& accepted, const CovarianceScale& start);
 
-  /// Nothing accepted, the covariances as stated.
+  /// Nothing accepted, the covariances as stated, odometry's no larger than its steps vary.
   const Explanation<Pose>& nothing();
 
   /// What all groups of loops that gain by themselves would gain, of nothing accepted, at each of
@@ -102,7 +102,8 @@ class Climb {
     std::size_t peak;
   };
 
-  void start(const CovarianceScale& scale);
+  std::size_t loop_count() const { return objective_.stated().reduced.loops.size(); }
+  void start(Explanation<Pose> explanation);
   void stand_on(Standpoint<Pose> standpoint);
   void begin();
   Explanation<Pose> climb();

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -39,6 +38,7 @@ struct Component {
 
   Tangent cost;  // in the file's units
   Tangent redundancy;
+  Tangent most = Tangent::Constant(kMostScale);  // of logs of the factors
 
   double evidence(const Tangent& logs) const {
     return -0.5 * (cost.dot((-logs).array().exp().matrix()) + redundancy.dot(logs)) +
@@ -63,10 +63,10 @@ struct Component {
     if (same_shapes) {
       const Tangent own = before.array() - before.mean();
       const double scale = drawn_in(cost.dot((-own).array().exp().matrix()), redundancy.sum());
-      return (scale + own.array()).max(-kMostScale).min(kMostScale);
+      return (scale + own.array()).max(-kMostScale).min(most.array());
     }
     const double common = drawn_in(cost.sum(), redundancy.sum());
-    const Tangent one = Tangent::Constant(std::clamp(common, -kMostScale, kMostScale));
+    const Tangent one = most.cwiseMin(std::max(common, -kMostScale));
     if (cost.minCoeff() < 0.0) return one;
     const Tangent each = by_coordinate();
     return evidence(each) > evidence(one) ? each : one;
@@ -84,7 +84,7 @@ struct Component {
       const Precision curvature = prior + Precision(fitted.asDiagonal());
       logs += curvature.llt().solve(gradient).cwiseMax(-1.0).cwiseMin(1.0);
     }
-    return logs.cwiseMax(logs.maxCoeff() - kMostApart).cwiseMax(-kMostScale).cwiseMin(kMostScale);
+    return logs.cwiseMax(logs.maxCoeff() - kMostApart).cwiseMax(-kMostScale).cwiseMin(most);
   }
 };
 
@@ -163,7 +163,8 @@ ScaleShares weigh(const Accuracy<Pose>& accuracy, Residuals<Pose>& residuals) {
 // What they cost and tell, by coordinate, for the scale that is learnt.
 template <class Pose>
 Component<typename Pose::Tangent> component_of(const Residuals<Pose>& residuals) {
-  Component<typename Pose::Tangent> loops{Pose::Tangent::Zero(), Pose::Tangent::Zero()};
+  using Tangent = typename Pose::Tangent;
+  Component<Tangent> loops{.cost = Tangent::Zero(), .redundancy = Tangent::Zero()};
   for (const auto& residual : residuals) {
     loops.cost += residual.weight.learnt * residual.parts;
     loops.redundancy += residual.telling();
@@ -176,8 +177,8 @@ template <class Pose>
 ScaleShares likeliest_from(Accuracy<Pose> accuracy, Residuals<Pose>& residuals) {
   for (int k = 0; k < kRepetitions; ++k) {
     accuracy.shares = weigh(accuracy, residuals);
-    const auto [cost, redundancy] = component_of(residuals);
-    const double log_scale = drawn_in(cost.sum(), redundancy.sum());
+    const auto loops = component_of(residuals);
+    const double log_scale = drawn_in(loops.cost.sum(), loops.redundancy.sum());
     accuracy.scale = std::exp(std::clamp(log_scale, -kMostScale, kMostScale));
   }
   return accuracy.shares;
@@ -209,18 +210,14 @@ Component<typename Pose::Tangent> told_apart(const Component<typename Pose::Tang
   return component.cost.minCoeff() < 0.0 ? component.by_part(Pose::kDim) : component;
 }
 
-template <class Tangent>
-std::pair<double, Tangent> scale_and_shape(const Tangent& logs) {
-  return {std::exp(logs.mean()), (logs.array() - logs.mean()).exp()};
-}
-
 // What odometry tells of its own; loops as they are.
 template <class Pose>
-Lesson<Pose> of_odometry(const Explanation<Pose>& explanation, bool same_shapes) {
+Lesson<Pose> of_odometry(const Explanation<Pose>& explanation, const typename Pose::Tangent& most,
+                         bool same_shapes) {
   using Tangent = typename Pose::Tangent;
   const auto& [scale, shapes] = std::tie(explanation.scale, explanation.shapes);
   const Component<Tangent> odometry{explanation.odometry_cost.cwiseProduct(shapes.odometry),
-                                    explanation.redundancy.odometry};
+                                    explanation.redundancy.odometry, most};
   const Tangent before = log_scales(scale.odometry, shapes.odometry);
   const Tangent now = told_apart<Pose>(odometry).likeliest(before, same_shapes);
   Lesson<Pose> lesson{scale, shapes, explanation.shares};
@@ -262,7 +259,7 @@ Lesson<Pose> learn(const Assessment<Pose>& assessment, const Explanation<Pose>& 
   const ScaleShares& shares = explanation.shares;
   const double before =
       log_likelihood<Pose>({explanation.scale.loops, explanation.shapes.loops, shares}, residuals);
-  const Lesson<Pose> odometry = of_odometry(explanation, same_shapes);
+  const Lesson<Pose> odometry = of_odometry(explanation, assessment.most_odometry(), same_shapes);
   Lesson<Pose> best = odometry;
   for (const ScaleShift& start :
        {ScaleShift{1.0, shares}, wider_most(shares), sharper_most(shares)}) {

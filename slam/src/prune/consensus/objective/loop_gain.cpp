@@ -7,6 +7,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include "prune/consensus/constants.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
@@ -99,6 +100,13 @@ Belief<Pose> without(const Belief<Pose>& with, const typename Pose::Matrix& Omeg
 }
 
 template <class Pose>
+typename Pose::Tangent residual_with(const Belief<Pose>& others,
+                                     const typename Pose::Matrix& Omega) {
+  using Matrix = typename Pose::Matrix;
+  return (Matrix::Identity() + others.P * Omega).partialPivLu().solve(others.r);
+}
+
+template <class Pose>
 LoopGain loop_gain(const Belief<Pose>& others, const OwnError<Pose>& own,
                    const ScaleMixture& mixture, const CovarianceScale& deviation) {
   const Factors odometry = factors(deviation.odometry);
@@ -125,10 +133,12 @@ LoopGain loop_gain(const Belief<Pose>& others, const OwnError<Pose>& own,
 
 template Prediction<Pose2> predict(const Belief<Pose2>&, const Pose2::Matrix&);
 template Belief<Pose2> without(const Belief<Pose2>&, const Pose2::Matrix&);
+template Pose2::Tangent residual_with(const Belief<Pose2>&, const Pose2::Matrix&);
 template LoopGain loop_gain(const Belief<Pose2>&, const OwnError<Pose2>&, const ScaleMixture&,
                             const CovarianceScale&);
 template Prediction<Pose3> predict(const Belief<Pose3>&, const Pose3::Matrix&);
 template Belief<Pose3> without(const Belief<Pose3>&, const Pose3::Matrix&);
+template Pose3::Tangent residual_with(const Belief<Pose3>&, const Pose3::Matrix&);
 template LoopGain loop_gain(const Belief<Pose3>&, const OwnError<Pose3>&, const ScaleMixture&,
                             const CovarianceScale&);
 

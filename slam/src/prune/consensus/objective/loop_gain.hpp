@@ -26,6 +26,11 @@ struct Belief {
 template <class Pose>
 Belief<Pose> without(const Belief<Pose>& with, const typename Pose::Matrix& Omega);
 
+/// The residual with a loop of that mean information, by what is believed without it.
+template <class Pose>
+typename Pose::Tangent residual_with(const Belief<Pose>& others,
+                                     const typename Pose::Matrix& Omega);
+
 /// `others`: without the loop.
 template <class Pose>
 Prediction<Pose> predict(const Belief<Pose>& others, const typename Pose::Matrix& Sigma);

@@ -143,6 +143,23 @@ typename Pose::Tangent NearDensity<Pose>::offset(const Pose& T) const {
 }
 
 template <class Pose>
+double NearDensity<Pose>::log_nearer(const Pose& z, const Tangent& residual, bool forward) const {
+  const Pose h = z * Pose::exp(residual);
+  return forward ? log_at(h) - log_at(z) : log_at(h.inverse()) - log_at(z.inverse());
+}
+
+// But for a constant.
+template <class Pose>
+double NearDensity<Pose>::log_at(const Pose& T) const {
+  const Tangent off = offset(T);
+  const auto log_part = [&off](const Kernel& kernel) {
+    const double square = off.cwiseQuotient(kernel.deviation).squaredNorm();
+    return kernel.log_peak() - 0.5 * (kTailDof + Pose::kDof) * std::log1p(square / kTailDof);
+  };
+  return log_sum(log_part(kernels_[0]), log_part(kernels_[1]));
+}
+
+template <class Pose>
 double NearDensity<Pose>::Kernel::log_peak() const {
   return -deviation.array().log().sum() - 0.5 * Pose::kDof * kLog2Pi;
 }

@@ -23,11 +23,14 @@ std::size_t proposal_class(const ReducedGraph<Pose>& graph, Index loop) {
 /// with probability in proportion to f(h) of their relative pose h, so that the odds of true
 /// against false are N(z; h, S) f(h) / (f(z) f_mean): f_mean is the mean of f over random pairs
 /// of poses that span about as many vertices, on the map in question. On a map shrunk to a point
-/// every pair is near, and no loop proves anything. Since h is near z, f(h) / f(z) is 1.
+/// every pair is near, and no loop proves anything. Where h is near z, f(h) / f(z) is about 1; of a
+/// loop that says that two poses are near which the map has far from each other, however much it
+/// may err, little is left.
 ///
-/// f is normal around the median, with even odds as wide as loops differ (they are often much
+/// f is a kernel around the median, with even odds as wide as loops differ (they are often much
 /// alike, those of false loops above all) or wider by a step of odometry: the nearest pose to one
-/// is up to that far away.
+/// is up to that far away. It is normal where near pairs are counted; how much nearer h is than z,
+/// of which one may lie far out, is told by Student's t.
 template <class Pose>
 class NearDensity {
  public:
@@ -37,6 +40,10 @@ class NearDensity {
   /// log f_mean of each proposal class, over maps that are as likely: the graph's nodes are at
   /// their poses.
   std::array<double, kProposalClasses> log_mean(const std::vector<std::vector<Pose>>& maps) const;
+
+  /// log f(h) - log f(z) of a loop that measured z and is left the residual log(z^-1 h) by the map
+  /// with it; `forward`: from the earlier vertex to the later one.
+  double log_nearer(const Pose& z, const typename Pose::Tangent& residual, bool forward) const;
 
  private:
   using Tangent = typename Pose::Tangent;
@@ -48,7 +55,7 @@ class NearDensity {
     Pose T_node_vertex;
   };
 
-  /// One of the two normal distributions around the median.
+  /// One of the two distributions around the median.
   struct Kernel {
     Tangent deviation;
     double log_peak() const;
@@ -68,6 +75,7 @@ class NearDensity {
   void fit(const ReducedGraph<Pose>& graph);
   void find_places(const ReducedGraph<Pose>& graph);
   Tangent offset(const Pose& T) const;
+  double log_at(const Pose& T) const;
   std::size_t class_of(std::size_t from, std::size_t to) const;
   void count_pairs(std::size_t anchor, std::array<double, kProposalClasses>& pairs) const;
   void count_near(const Places& on, std::size_t first, std::size_t stride,

@@ -1,5 +1,6 @@
 #include "prune/consensus/objective/objective.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <tuple>
 
@@ -7,10 +8,29 @@
 
 #include "prune/consensus/estimate/log_normal.hpp"
 #include "prune/consensus/estimate/map_volume.hpp"
+#include "prune/consensus/estimate/step_spread.hpp"
 #include "prune/consensus/objective/log_prior.hpp"
 #include "prune/consensus/objective/own_frames.hpp"
 
 namespace isotherm::slam::detail {
+namespace {
+
+// Steps that vary less, in times of what the file says that they err by, are commands or rounded.
+constexpr double kLeastSpread = 1e-6;
+
+template <class Pose>
+typename Pose::Tangent most_scales(const StepSpread& spread) {
+  const auto most = [](double part) {
+    return part > kLeastSpread ? std::min(std::log(part), kMostScale) : kMostScale;
+  };
+  typename Pose::Tangent logs;
+  logs.template head<Pose::kDim>().setConstant(most(spread.translation));
+  logs.template tail<Pose::kDof - Pose::kDim>().setConstant(most(spread.rotation));
+  return logs;
+}
+
+}  // namespace
+
 template <class Pose>
 Objective<Pose>::Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles, Index window,
                            bool calibrate)
@@ -21,7 +41,8 @@ Objective<Pose>::Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
       near_(stated_.reduced),
       runs_(stated_.reduced, window),
       window_(window),
-      calibrate_(calibrate) {
+      calibrate_(calibrate),
+      most_odometry_(most_scales<Pose>(calibrate ? step_spread(graph_, roles_) : StepSpread{})) {
   const MapVolume<Pose> map(stated_.reduced.poses);
   log_volume_ = 0.5 * (map.variance().array().log().sum() + Pose::kDof * kLog2Pi);
   for (const auto& loop : stated_.reduced.loops) {
@@ -43,7 +64,15 @@ double Objective<Pose>::log_alternative(Index loop, const NearByClass& near,
   return log_copy_density<Pose>(log_sigma_[loop] + Pose::kDof * std::log(loop_scale));
 }
 
-// Log densities of the accepted loops at the peak, and of their scales.
+template <class Pose>
+double Objective<Pose>::log_nearer(Index loop, const typename Pose::Tangent& r) const {
+  if (runs_.copied(loop)) return 0.0;
+  const auto& link = stated_.reduced.loops[loop];
+  const bool forward = stated_.reduced.vertex[link.a] <= stated_.reduced.vertex[link.b];
+  return near_.log_nearer(link.T_a_b, r, forward);
+}
+
+// Log densities of the accepted loops at the peak, and of their scales; how near they are.
 template <class Pose>
 double Objective<Pose>::loops_fit(const Explanation<Pose>& explanation,
                                   const ScaledGraph<Pose>& graph,
@@ -56,6 +85,7 @@ double Objective<Pose>::loops_fit(const Explanation<Pose>& explanation,
     const typename Pose::Tangent r = estimate.residual(link);
     const double chi2 = r.dot(information(explanation, graph, static_cast<Index>(k)) * r);
     fit -= 0.5 * (chi2 + log_sigma_[k] + Pose::kDof * (kLog2Pi + std::log(scale)));
+    fit += log_nearer(static_cast<Index>(k), r);
   }
   return fit;
 }
@@ -82,7 +112,8 @@ double Objective<Pose>::evidence(const Explanation<Pose>& explanation,
          log_prior(kept, explanation.accepted.size()) + log_scale_peak(explanation);
 }
 
-// log of the prior at the scales times the width of the peak there.
+// log of the prior at the scales times the width of the peak there, and of how likely steps of
+// odometry are that vary as little as they do.
 template <class Pose>
 double Objective<Pose>::log_scale_peak(const Explanation<Pose>& explanation) const {
   if (!calibrate_) return 0.0;
@@ -91,8 +122,10 @@ double Objective<Pose>::log_scale_peak(const Explanation<Pose>& explanation) con
   };
   const auto& [scale, shapes, redundancy] =
       std::tie(explanation.scale, explanation.shapes, explanation.redundancy);
+  const auto steps = static_cast<double>(roles_.odometry.size());
   return peak(scale.odometry, shapes.odometry, redundancy.odometry) +
-         peak(scale.loops, shapes.loops, redundancy.loops);
+         peak(scale.loops, shapes.loops, redundancy.loops) -
+         log_excess(log_scales(scale.odometry, shapes.odometry), most_odometry_, steps);
 }
 
 template class Objective<Pose2>;

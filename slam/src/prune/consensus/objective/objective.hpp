@@ -48,17 +48,17 @@ struct Explanation {
 
 /// The log evidence of an explanation: of the accepted set A and the scales,
 ///
-///     log p(z_A, odometry | scales) - sum over A of log f_mean
+///     log p(z_A, odometry | scales) - sum over A of (log f_mean + log f(z) - log f(h))
 ///         + log pi(A) + log pi(scales)
 ///
 /// with p by Laplace's approximation from the factor that the estimate holds, without what does not
 /// depend on A and the scales (of odometry without cycles that is all of its own: p is that of z_A
-/// given odometry), f_mean as in
-/// NearDensity, pi(A) the Beta-binomial of a fraction of which nothing is known. The scales are
-/// log-normal around what the file states (scale_prior.hpp) and integrated over by Laplace's
-/// approximation. Which loops are as accurate as most and which less (ScaleShares) is integrated
-/// out by variational Bayes (Bishop, Pattern Recognition and Machine Learning, 10.1), which gives a
-/// lower bound. A part that A joins to another lies anywhere on the map.
+/// given odometry), f_mean, f(z) and f(h) as in NearDensity, pi(A) the Beta-binomial of a fraction
+/// of which nothing is known. The scales are log-normal around what the file states
+/// (scale_prior.hpp) and integrated over by Laplace's approximation. Which loops are as accurate as
+/// most and which less (ScaleShares) is integrated out by variational Bayes (Bishop, Pattern
+/// Recognition and Machine Learning, 10.1), which gives a lower bound. A part that A joins to
+/// another lies anywhere on the map.
 ///
 /// The same number is what accepting the loops one by one adds (loop_gain), in any order.
 template <class Pose>
@@ -81,10 +81,18 @@ class Objective {
   }
   const Runs<Pose>& runs() const noexcept { return runs_; }
 
+  /// Logs of the factors on odometry's variances at most, by coordinate: of larger errors its steps
+  /// would vary more than they do (StepSpread).
+  const typename Pose::Tangent& most_odometry() const noexcept { return most_odometry_; }
+
   /// The mean inverse of a loop's covariance, by its weight.
   typename Pose::Matrix information(const Explanation<Pose>& now, const ScaledGraph<Pose>& graph,
                                     Index loop) const {
-    const auto& [learnt, stated] = now.weights[loop];
+    return information(now, graph, loop, now.weights[loop]);
+  }
+  typename Pose::Matrix information(const Explanation<Pose>& now, const ScaledGraph<Pose>& graph,
+                                    Index loop, const LoopWeight& weight) const {
+    const auto& [learnt, stated] = weight;
     return learnt / now.scale.loops * graph.reduced.loops[loop].information +
            stated * stated_.reduced.loops[loop].information;
   }
@@ -98,6 +106,12 @@ class Objective {
   /// copies the measurement of the one before it in its run, that of a copy, so that a group
   /// of copies counts as one draw.
   double log_alternative(Index loop, const NearByClass& near, double loop_scale) const;
+
+  /// What NearDensity::log_nearer() says of a loop that the map leaves the residual r; of a copy
+  /// nothing, since what it measures was drawn with another.
+  double log_nearer(Index loop, const typename Pose::Tangent& r) const;
+
+  const NearDensity<Pose>& near_density() const noexcept { return near_; }
 
   /// Of the logs of the factors on covariances that measurements of this redundancy tell.
   CovarianceScale scale_deviation(const Redundancy<Pose>& redundancy) const {
@@ -136,6 +150,7 @@ class Objective {
   Runs<Pose> runs_;
   Index window_;
   bool calibrate_;
+  typename Pose::Tangent most_odometry_;
   double log_volume_;
   std::vector<double> log_sigma_;  // log|Sigma| of each loop
 };

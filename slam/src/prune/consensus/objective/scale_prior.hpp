@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Core>
 
@@ -25,6 +26,21 @@ inline double scale_deviation(double redundancy) {
 template <class Tangent>
 Tangent log_scales(double scale, const Tangent& shape) {
   return std::log(scale) + shape.array().log();
+}
+
+/// The other way round.
+template <class Tangent>
+std::pair<double, Tangent> scale_and_shape(const Tangent& logs) {
+  return {std::exp(logs.mean()), (logs.array() - logs.mean()).exp()};
+}
+
+/// log of how much likelier as many steps would be that vary as much as errors of these factors do
+/// than those are that vary by `most`, less in some coordinates: normal, and of what else varies
+/// them nothing is known.
+template <class Tangent>
+double log_excess(const Tangent& logs, const Tangent& most, double steps) {
+  const auto over = (logs - most).array().max(0.0);
+  return 0.5 * steps * (over - 1.0 + (-over).exp()).sum();
 }
 
 /// Of the logs, with one for each coordinate: (s^2 (I + 11'))^-1 = (I - 11' / (1 + d)) / s^2.
