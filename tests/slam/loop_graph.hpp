@@ -50,9 +50,7 @@ LoopGraph<Pose> random_loop_graph(isotherm::Random& random, int n, int loops, do
     made.graph.constraints.push_back(loop);
   }
   for (auto& constraint : made.graph.constraints) {
-    const Eigen::LLT<typename Pose::Matrix> factor(constraint.information);
-    const typename Pose::Tangent white = random_tangent<Pose>(random, noise);
-    const typename Pose::Tangent xi = factor.matrixU().solve(white);
+    const auto xi = random_error<Pose>(random, constraint.information, noise);
     constraint.T_from_to =
         made.truth[constraint.from].inverse() * made.truth[constraint.to] * Pose::exp(xi);
   }

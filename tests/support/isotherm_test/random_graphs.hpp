@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Cholesky>
+
 #include "isotherm/base/random.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 
@@ -21,6 +23,14 @@ typename Pose::Matrix random_information(isotherm::Random& random, double scale)
     for (int c = 0; c < Pose::kDof; ++c) a(r, c) = random.normal();
   }
   return scale * (a * a.transpose() + 0.1 * Pose::Matrix::Identity());
+}
+
+/// Normal, of this information, `noise` times as large.
+template <class Pose>
+typename Pose::Tangent random_error(isotherm::Random& random,
+                                    const typename Pose::Matrix& information, double noise = 1.0) {
+  const Eigen::LLT<typename Pose::Matrix> factor(information);
+  return factor.matrixU().solve(random_tangent<Pose>(random, noise));
 }
 
 /// `n` poses in a chain with random steps and full information matrices, every

@@ -25,6 +25,7 @@
 namespace isotherm::slam {
 namespace {
 
+using isotherm_test::random_error;
 using isotherm_test::random_loop_graph;
 using isotherm_test::random_tangent;
 using spectral::Verdict;
@@ -98,9 +99,7 @@ PoseGraph<Pose> graph_with_independent_rotation(Random& random) {
     auto& information = constraint.information;
     information.template topRightCorner<Pose::kDim, kTurns>().setZero();
     information.template bottomLeftCorner<kTurns, Pose::kDim>().setZero();
-    const Eigen::LLT<typename Pose::Matrix> factor(information);
-    const typename Pose::Tangent white = random_tangent<Pose>(random, 1.0);
-    const typename Pose::Tangent error = factor.matrixU().solve(white);
+    const auto error = random_error<Pose>(random, information);
     constraint.T_from_to = constraint.T_from_to * Pose::exp(error);
   }
   return graph;

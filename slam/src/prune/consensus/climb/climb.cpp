@@ -54,7 +54,7 @@ Climb<Pose>::Climb(const Objective<Pose>& objective, ConsensusOptions options, R
 
 template <class Pose>
 Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
-  start(unlearnt<Pose>(std::vector<bool>(loop_count()), scale));
+  start(none_at(scale));
   return climb();
 }
 
@@ -124,7 +124,7 @@ void Climb<Pose>::stand_at(const Explanation<Pose>& found) {
 template <class Pose>
 Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
                                           const CovarianceScale& start_scale) {
-  start(unlearnt<Pose>(std::vector<bool>(loop_count()), start_scale));
+  start(none_at(start_scale));
   for (std::size_t k = 0; k < accepted.size(); ++k) dropped_[k] = !accepted[k];
   grow();
   now_.accepted = accepted;
@@ -137,7 +137,7 @@ Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
 template <class Pose>
 const Explanation<Pose>& Climb<Pose>::nothing() {
   if (!nothing_) {
-    auto none = unlearnt<Pose>(std::vector<bool>(loop_count()), {});
+    auto none = none_at({});
     std::tie(none.scale.odometry, none.shapes.odometry) =
         scale_and_shape<typename Pose::Tangent>(objective_.most_odometry().cwiseMin(0.0));
     start(std::move(none));
@@ -148,7 +148,7 @@ const Explanation<Pose>& Climb<Pose>::nothing() {
 
 template <class Pose>
 std::vector<double> Climb<Pose>::first_gains(const std::vector<CovarianceScale>& scales) {
-  start(unlearnt<Pose>(std::vector<bool>(loop_count()), {}));
+  start(none_at({}));
   std::vector<double> gains;
   for (const auto& scale : scales) {
     assessment_.weigh_at(now_, scale);
@@ -201,6 +201,11 @@ double Climb<Pose>::summit() const {
   double summit = -std::numeric_limits<double>::infinity();
   for (const auto& peak : peaks_) summit = std::max(summit, peak.evidence);
   return summit;
+}
+
+template <class Pose>
+Explanation<Pose> Climb<Pose>::none_at(const CovarianceScale& scale) const {
+  return unlearnt<Pose>(std::vector<bool>(objective_.stated().reduced.loops.size()), scale);
 }
 
 template <class Pose>

@@ -102,7 +102,7 @@ class Climb {
     std::size_t peak;
   };
 
-  std::size_t loop_count() const { return objective_.stated().reduced.loops.size(); }
+  Explanation<Pose> none_at(const CovarianceScale& scale) const;
   void start(Explanation<Pose> explanation);
   void stand_on(Standpoint<Pose> standpoint);
   void begin();
