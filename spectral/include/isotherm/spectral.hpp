@@ -32,7 +32,6 @@
 #include "isotherm/spectral/sparse/block_cholesky.hpp"
 #include "isotherm/spectral/sparse/block_covariance.hpp"
 #include "isotherm/spectral/sparse/branch_covariance.hpp"
-#include "isotherm/spectral/sparse/covariance_work.hpp"
 #include "isotherm/spectral/sparse/damped_step.hpp"
 #include "isotherm/spectral/sparse/earlier_factor.hpp"
 #include "isotherm/spectral/sparse/laplacian_solver.hpp"

@@ -6,7 +6,6 @@
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/random.hpp"
 #include "isotherm/spectral/sparse/branch_covariance.hpp"
-#include "isotherm/spectral/sparse/covariance_work.hpp"
 #include "sparse/block_order.hpp"
 
 namespace isotherm::spectral {
@@ -57,12 +56,6 @@ Pairs all_pairs(Index count) {
   for (Index a = 0; a < count; ++a) {
     for (Index b = 0; b < count; ++b) pairs.emplace_back(a, b);
   }
-  return pairs;
-}
-
-Pairs all_but_diagonal(Index count) {
-  Pairs pairs = all_pairs(count);
-  std::erase_if(pairs, [](const auto& pair) { return pair.first == pair.second; });
   return pairs;
 }
 
@@ -154,25 +147,6 @@ TEST(PairCovariance, NeedsASupernodalFactor) {
 
   const BlockCholesky without_factor(3, 2, pairs, FactorForm::supernodal);
   EXPECT_THROW(pair_covariances<3>(without_factor, pairs), NumericalError);
-}
-
-TEST(CovarianceWork, IsThatOfFrontsAndOfPairsOutsideThePattern) {
-  const Pairs all = all_pairs(30);
-  const auto dense = covariance_work(BlockCholesky(3, 30, all_but_diagonal(30), kSupernodal), all);
-  EXPECT_NEAR(dense.fronts, 2.0 / 3.0 * 90 * 90 * 90, 1.0) << "one front";
-  EXPECT_EQ(dense.pairs, 0.0);
-
-  Random random(1);
-  const auto ring = ring_with_chords(random, 200, 0);
-  const BlockCholesky sparse(3, 200, ring, kSupernodal);
-  EXPECT_EQ(covariance_work(sparse, ring).pairs, 0.0);
-  const auto far = covariance_work(sparse, Pairs{{0, 100}, {50, 150}});
-  EXPECT_GT(far.pairs, 0.0);
-  const auto more = covariance_work(sparse, Pairs{{0, 100}, {50, 150}, {25, 125}});
-  EXPECT_GT(more.pairs, far.pairs);
-  EXPECT_LT(far.fronts, covariance_work(sparse, ring).fronts) << "branches that lead to a pair";
-  EXPECT_EQ(covariance_work(BlockCholesky(3, 0, {}, kSupernodal), Pairs{{-1, -1}}).fronts, 0.0);
-  EXPECT_THROW(covariance_work(BlockCholesky(3, 200, ring), ring), InvalidArgument);
 }
 
 TEST(ChainElimination, TakesAChainApartInFewRounds) {

@@ -45,28 +45,36 @@ BlockCholesky factor_of(const Pairs& pairs, Index count, Eigen::MatrixXd& dense)
   return blocks;
 }
 
-// Z_ab = sum of (L^-1)_ka' (L^-1)_kb over all k, slab by slab.
+// Z_ab = sum of (L^-1)_ka' (L^-1)_kb over all k, front by front.
+Eigen::MatrixXd inverse_of(const FrontTree& tree, Eigen::Index most_entries, int threads) {
+  const Eigen::Index size = Eigen::Index{tree.block_count()} * kDof;
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(size, size);
+  for (Index front = 0; front < tree.front_count(); ++front) {
+    std::vector<Index> below;
+    for (Index block = 0; block < tree.block_count(); ++block) {
+      if (tree.meeting(tree.front_of(block), front) == front) below.push_back(block);
+    }
+    std::vector<std::pair<Index, Index>> pairs;
+    for (const Index a : below) {
+      for (const Index b : below) pairs.emplace_back(a, b);
+    }
+    const auto products = HalfSolve<kDof>(tree, front, pairs, most_entries).products(threads);
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const auto [a, b] = pairs[k];
+      inverse.block<kDof, kDof>(a * kDof, b * kDof) += products[k];
+    }
+  }
+  return inverse;
+}
+
 void expect_inverse(Index side, Eigen::Index most_entries) {
   const Index count = side * side;
   Eigen::MatrixXd dense;
   const BlockCholesky blocks = factor_of(grid(side), count, dense);
   const FrontTree tree(blocks);
-  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(dense.rows(), dense.cols());
-  for (Index front = 0; front < tree.front_count(); ++front) {
-    std::vector<Index> below;
-    for (Index block = 0; block < count; ++block) {
-      if (tree.meeting(tree.front_of(block), front) == front) below.push_back(block);
-    }
-    HalfSolve<kDof> x(tree, front, below, most_entries);
-    while (x.next()) {
-      for (const Index a : below) {
-        for (const Index b : below) {
-          inverse.block<kDof, kDof>(a * kDof, b * kDof) += x.of(a).transpose() * x.of(b);
-        }
-      }
-    }
-  }
+  const Eigen::MatrixXd inverse = inverse_of(tree, most_entries, 1);
   EXPECT_LT((inverse - dense.inverse()).norm(), 1e-12);
+  EXPECT_EQ(inverse, inverse_of(tree, most_entries, 2));
 }
 
 TEST(HalfSolve, RowsMultiplyToTheInverse) {

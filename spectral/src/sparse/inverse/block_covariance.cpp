@@ -27,9 +27,10 @@ class PairInversion {
   using Pair = std::pair<Index, Index>;
   using Front = detail::FrontInverses<double>::View;  // Z between all rows of a front
 
-  PairInversion(const BlockCholesky& factor, std::span<const Pair> pairs)
+  PairInversion(const BlockCholesky& factor, std::span<const Pair> pairs, int threads)
       : tree_(factor),
         pairs_(pairs),
+        threads_(threads),
         plan_(tree_, pairs),
         answers_(pairs.size()),
         inverses_(tree_),
@@ -117,24 +118,17 @@ class PairInversion {
     }
   }
 
-  void add_half_solved(Index front, std::span<const std::size_t> pairs) {
-    std::vector<Index> blocks;
-    blocks.reserve(2 * pairs.size());
-    for (const std::size_t k : pairs) {
-      blocks.push_back(pairs_[k].first);
-      blocks.push_back(pairs_[k].second);
-    }
-    detail::HalfSolve<Dof> x(tree_, front, blocks);
-    while (x.next()) {
-      for (const std::size_t k : pairs) {
-        const auto [a, b] = pairs_[k];
-        answers_[k].cross += x.of(a).transpose().lazyProduct(x.of(b));
-      }
-    }
+  void add_half_solved(Index front, std::span<const std::size_t> numbers) {
+    std::vector<Pair> pairs;
+    pairs.reserve(numbers.size());
+    for (const std::size_t k : numbers) pairs.push_back(pairs_[k]);
+    const auto products = detail::HalfSolve<Dof>(tree_, front, pairs).products(threads_);
+    for (std::size_t k = 0; k < numbers.size(); ++k) answers_[numbers[k]].cross += products[k];
   }
 
   detail::FrontTree tree_;
   std::span<const Pair> pairs_;
+  int threads_;
   detail::PairPlan plan_;
   std::vector<PairCovariance<Dof>> answers_;
   detail::FrontInverses<double> inverses_;
@@ -145,19 +139,23 @@ class PairInversion {
 
 template <int Dof>
 std::vector<PairCovariance<Dof>> pair_covariances(const BlockCholesky& factor,
-                                                  std::span<const std::pair<Index, Index>> pairs) {
+                                                  std::span<const std::pair<Index, Index>> pairs,
+                                                  int threads) {
   if (pairs.empty()) return {};
   if (factor.block_count() > 0 && factor.supernodes().values.empty()) {
     throw NumericalError("cholesky", "covariances without a factor");
   }
-  return PairInversion<Dof>(factor, pairs).run();
+  return PairInversion<Dof>(factor, pairs, threads).run();
 }
 
 template std::vector<PairCovariance<2>> pair_covariances(const BlockCholesky&,
-                                                         std::span<const std::pair<Index, Index>>);
+                                                         std::span<const std::pair<Index, Index>>,
+                                                         int);
 template std::vector<PairCovariance<3>> pair_covariances(const BlockCholesky&,
-                                                         std::span<const std::pair<Index, Index>>);
+                                                         std::span<const std::pair<Index, Index>>,
+                                                         int);
 template std::vector<PairCovariance<6>> pair_covariances(const BlockCholesky&,
-                                                         std::span<const std::pair<Index, Index>>);
+                                                         std::span<const std::pair<Index, Index>>,
+                                                         int);
 
 }  // namespace isotherm::spectral

@@ -81,14 +81,9 @@ void PairPlan::choose_half_solved(const FrontTree& tree, std::span<const Pair> p
       if (a != f && b != f) carried += 2.0 * tree.size(f) * tree.size(f);
       row_cost[f] += 1.0;
     }
-    products_ += carried;
     saved[f] += carried - tree.width(f) * row_cost[f];
     const Index p = tree.parent(f);
-    if (!wanted_[f]) continue;
-    if (p == FrontTree::kNone) {
-      products_ -= std::max(0.0, saved[f]);
-      continue;
-    }
+    if (!wanted_[f] || p == FrontTree::kNone) continue;
     saved[p] += std::max(0.0, saved[f]);
     row_cost[p] += row_cost[f] + entries(f);
   }

@@ -32,9 +32,6 @@ class PairPlan {
   /// takes less time than carrying each of them up from below.
   bool half_solved(Index front) const { return half_solved_[front]; }
 
-  /// Products of two blocks that all pairs outside the pattern take in this way, at most.
-  double products() const noexcept { return products_; }
-
  private:
   /// Numbers of pairs, by front.
   struct ByFront {
@@ -56,7 +53,6 @@ class PairPlan {
   ByFront meeting_;
   std::vector<bool> wanted_;
   std::vector<bool> half_solved_;
-  double products_ = 0.0;
 };
 
 }  // namespace isotherm::spectral::detail

@@ -237,7 +237,7 @@ void Assessment<Pose>::solve(Explanation<Pose>& now, const std::vector<Index>& l
   if (odometry) {
     for (const auto& step : graph().steps) links.push_back(&step);
   }
-  const auto covariances = estimate_.residual_covariances(links);
+  const auto covariances = estimate_.residual_covariances(links, threads_);
   for (std::size_t i = 0; i < loops.size(); ++i) found_.covariances[loops[i]] = covariances[i];
   OdometryComponent<Pose> told;
   if (odometry) {

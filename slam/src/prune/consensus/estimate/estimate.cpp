@@ -7,10 +7,10 @@
 #include <Eigen/Cholesky>
 
 #include "isotherm/base/error.hpp"
+#include "isotherm/base/parallel.hpp"
 #include "isotherm/base/random.hpp"
 #include "isotherm/slam/optimize/initialize.hpp"
 #include "isotherm/spectral/sparse/block_covariance.hpp"
-#include "isotherm/spectral/sparse/covariance_work.hpp"
 #include "isotherm/spectral/sparse/earlier_factor.hpp"
 #include "prune/consensus/constants.hpp"
 
@@ -22,56 +22,6 @@ constexpr double kNear = 1.0;
 
 // Operations of a factorisation that take as long as to linearise one link (measured).
 constexpr double kFlopsOfLink = 5000.0;
-
-// Links that are linearised while one is ordered and analysed (measured).
-constexpr double kLinksOfAnalysis = 10.0;
-
-// An update factorises where it starts and where it ends, mostly.
-constexpr double kFactorisations = 2.0;
-
-using Pairs = std::vector<std::pair<Index, Index>>;
-
-Pairs joined_pairs(const Pairs& pairs, const Gauge& gauge) {
-  Pairs joined;
-  for (const auto& [a, b] : pairs) {
-    if (gauge.component[a] == gauge.component[b]) joined.emplace_back(a, b);
-  }
-  return joined;
-}
-
-// The equations of `used`, with room for the covariances of the `other` pairs where it takes less
-// to fill that in than to find them one by one.
-template <class Pose>
-NormalEquations<Pose> equations_for(const PoseGraph<Pose>& used, const Pairs& other) {
-  const Gauge gauge = fix_gauge(used);
-  const Pairs joined = joined_pairs(other, gauge);
-  Pairs rows;
-  for (const auto& [a, b] : joined) rows.emplace_back(gauge.variable[a], gauge.variable[b]);
-  const auto form = spectral::FactorForm::supernodal;
-  NormalEquations<Pose> sparse(used, gauge, {}, form);
-  const auto work = spectral::covariance_work(sparse.hessian(), rows);
-  const auto links = static_cast<double>(used.constraints.size() + joined.size());
-  if (work.pairs < kLinksOfAnalysis * kFlopsOfLink * links) return sparse;
-  try {
-    NormalEquations<Pose> roomy(used, gauge, joined, form);
-    const auto filled = spectral::covariance_work(roomy.hessian(), rows);
-    const double more = kFactorisations * (roomy.hessian().flops() - sparse.hessian().flops()) +
-                        filled.fronts - work.fronts;
-    return more < work.pairs ? std::move(roomy) : std::move(sparse);
-  } catch (const NumericalError&) {  // a factor with that room has too many entries to be counted
-    return sparse;
-  }
-}
-
-template <class Pose>
-Pairs other_pairs(const ReducedGraph<Pose>& graph, const std::vector<bool>& accepted) {
-  Pairs pairs;
-  for (std::size_t k = 0; k < accepted.size(); ++k) {
-    const auto& loop = graph.loops[k];
-    if (!accepted[k] && loop.a != loop.b) pairs.emplace_back(loop.a, loop.b);
-  }
-  return pairs;
-}
 
 }  // namespace
 
@@ -96,7 +46,7 @@ void Estimate<Pose>::lay_out(const std::vector<bool>& accepted) {
   if (same) {
     equations_->measure(used);
   } else {
-    equations_.emplace(equations_for(used, other_pairs(*graph_, accepted)));
+    equations_.emplace(used, spectral::FactorForm::supernodal);
     has_factor_ = false;
     laid_out_for_ = accepted;
   }
@@ -295,7 +245,7 @@ std::pair<Index, Index> Estimate<Pose>::parts(const Link<Pose>& loop) const {
 
 template <class Pose>
 std::vector<typename Pose::Matrix> Estimate<Pose>::residual_covariances(
-    std::span<const Link<Pose>* const> links) const {
+    std::span<const Link<Pose>* const> links, int threads) const {
   const std::vector<Index>& variable = equations_->gauge().variable;
   std::vector<std::pair<Index, Index>> pairs;
   pairs.reserve(links.size());
@@ -303,15 +253,14 @@ std::vector<typename Pose::Matrix> Estimate<Pose>::residual_covariances(
     const bool turns_back = link->a == link->b;
     pairs.emplace_back(turns_back ? -1 : variable[link->a], turns_back ? -1 : variable[link->b]);
   }
-  const auto known = spectral::pair_covariances<Pose::kDof>(equations_->hessian(), pairs);
-  std::vector<Matrix> covariances;
-  covariances.reserve(links.size());
-  for (std::size_t k = 0; k < links.size(); ++k) {
+  const auto known = spectral::pair_covariances<Pose::kDof>(equations_->hessian(), pairs, threads);
+  std::vector<Matrix> covariances(links.size());
+  parallel_for_each(links.size(), threads, [&](std::size_t k) {
     const auto [r, by_a, by_b] = derivative(*links[k]);
     const Matrix across = by_a * known[k].cross * by_b.transpose();
-    covariances.push_back(by_a * known[k].first * by_a.transpose() +
-                          by_b * known[k].second * by_b.transpose() + across + across.transpose());
-  }
+    covariances[k] = by_a * known[k].first * by_a.transpose() +
+                     by_b * known[k].second * by_b.transpose() + across + across.transpose();
+  });
   return covariances;
 }
 

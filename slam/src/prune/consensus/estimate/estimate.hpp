@@ -91,9 +91,10 @@ class Estimate {
   /// links join them.
   std::pair<Index, Index> parts(const Link<Pose>& loop) const;
 
-  /// Covariances of the residuals of `links` where the factor of the last update was formed. The
-  /// ends of each must be connected.
-  std::vector<Matrix> residual_covariances(std::span<const Link<Pose>* const> links) const;
+  /// Covariances of the residuals of `links` where the factor of the last update was formed, found
+  /// on `threads` threads (0: all cores). The ends of each must be connected.
+  std::vector<Matrix> residual_covariances(std::span<const Link<Pose>* const> links,
+                                           int threads = 1) const;
 
   /// r' Omega r summed over odometry, in units of the graph's covariances.
   double odometry_cost() const;

@@ -32,11 +32,12 @@ struct PairCovariance {
 /// instead, whose products are Z_ab. Only branches that lead to a pair are visited.
 /// All pairs of neighbours together cost about two factorisations; a pair whose
 /// branches meet near the root costs a triangular solve along them.
-/// Runs on one thread: dense kernels of a serial BLAS may not be called from several.
-/// `Dof`, of 2, 3 and 6, is the factor's block size.
+/// Those rows are solved for on `threads` threads (0: all cores). `Dof`, of 2, 3 and 6, is the
+/// factor's block size.
 /// @throws InvalidArgument if the factor is not supernodal
 template <int Dof>
 std::vector<PairCovariance<Dof>> pair_covariances(const BlockCholesky& factor,
-                                                  std::span<const std::pair<Index, Index>> pairs);
+                                                  std::span<const std::pair<Index, Index>> pairs,
+                                                  int threads = 1);
 
 }  // namespace isotherm::spectral
