@@ -114,7 +114,7 @@ TEST(Search, OnASampleFindsWhatClimbsFromEachStartFind) {
   Climb<Pose2> climb(objective, kOptions, kSilent);
   const auto found = search(climb);
   Climb<Pose2> whole(objective, kOptions, kSilent);
-  double highest = whole.nothing().evidence;
+  double highest = whole.nothing()->evidence;
   std::vector<bool> accepted;
   climb_from_each_start(true, [&](const auto& start) {
     const auto peak = whole.from(start);

@@ -135,15 +135,19 @@ Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
 }
 
 template <class Pose>
-const Explanation<Pose>& Climb<Pose>::nothing() {
-  if (!nothing_) {
-    auto none = none_at({});
-    std::tie(none.scale.odometry, none.shapes.odometry) =
+const Explanation<Pose>* Climb<Pose>::nothing(double least) {
+  if (!nothing_ && least < nothing_below_) {
+    now_ = none_at({});
+    std::tie(now_.scale.odometry, now_.shapes.odometry) =
         scale_and_shape<typename Pose::Tangent>(objective_.most_odometry().cwiseMin(0.0));
-    start(std::move(none));
-    nothing_ = now_;
+    assessment_.start_over();
+    if (assessment_.assess(now_, least)) {
+      nothing_ = now_;
+    } else {
+      nothing_below_ = least;
+    }
   }
-  return *nothing_;
+  return nothing_ && nothing_->evidence >= least ? &*nothing_ : nullptr;
 }
 
 template <class Pose>

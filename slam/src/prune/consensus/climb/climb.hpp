@@ -60,8 +60,9 @@ class Climb {
   /// What explains best that exactly these loops are true, from `start`.
   Explanation<Pose> settled_on(const std::vector<bool>& accepted, const CovarianceScale& start);
 
-  /// Nothing accepted, the covariances as stated, odometry's no larger than its steps vary.
-  const Explanation<Pose>& nothing();
+  /// Nothing accepted, the covariances as stated, odometry's no larger than its steps vary; none
+  /// where the evidence of that is below `least`, which takes less time to tell.
+  const Explanation<Pose>* nothing(double least = -std::numeric_limits<double>::infinity());
 
   /// What all groups of loops that gain by themselves would gain, of nothing accepted, at each of
   /// these scales.
@@ -151,6 +152,7 @@ class Climb {
   Explanation<Pose> now_;
   Explanation<Pose> best_;
   std::optional<Explanation<Pose>> nothing_;
+  double nothing_below_ = std::numeric_limits<double>::infinity();  // its evidence, where not known
   std::vector<double> run_density_;       // log p(z | the loop before in its run)
   std::vector<Explanation<Pose>> peaks_;  // of earlier climbs
   std::vector<Passed> passed_;

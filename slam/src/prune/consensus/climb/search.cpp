@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <optional>
 
 #include "prune/consensus/climb/sample.hpp"
@@ -28,6 +29,14 @@ void keep_peaks(std::vector<Explanation<Pose>>& found) {
     if (!same) peaks.push_back(std::move(one));
   }
   found = std::move(peaks);
+}
+
+// Evidence of what is not so much worse than the best of these that it changes no probability.
+template <class Pose>
+double least_that_tells(const std::vector<Explanation<Pose>>& found) {
+  constexpr double kNoDigit = 40.0;  // nats: beyond the last of a double
+  const auto best = std::ranges::max_element(found, {}, &Explanation<Pose>::evidence);
+  return best == found.end() ? -std::numeric_limits<double>::infinity() : best->evidence - kNoDigit;
 }
 
 // As numbers of a sample say which loops of all those are.
@@ -86,9 +95,13 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   for (const auto& standpoint : standpoints(climb, depth.sample_soon)) {
     unless_it_breaks_down(try_from, standpoint);
   }
+  const auto nothing = [&] { return climb.nothing(least_that_tells(found)); };
   const auto astray = [&] {
-    return std::ranges::all_of(
-        found, [&](const auto& peak) { return peak.evidence <= climb.nothing().evidence; });
+    const auto* none = found.empty() ? nullptr : nothing();
+    const auto no_better = [&](const auto& peak) {
+      return none && peak.evidence <= none->evidence;
+    };
+    return std::ranges::all_of(found, no_better);
   };
   if (astray()) {
     climb_from_each_start(calibrate, try_from);
@@ -97,7 +110,7 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   if (calibrate && astray()) {
     for (const auto& start : gaining_starts(climb)) unless_it_breaks_down(try_from, start);
   }
-  found.push_back(climb.nothing());
+  if (const auto* none = nothing()) found.push_back(*none);
   keep_peaks(found);
   return found;
 }
