@@ -19,12 +19,12 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 // Searches from every start begin where one of the loops can be pruned. Where effort allows it
 // there is another one for at least twice as many loops, or for any more when none come; and in any
-// case for four times as many, of which the last one says little. Each is done by the time that
+// case for eight times as many, of which the last one says little. Each is done by the time that
 // there are a twentieth more edges, so that it is of the map that is there; of so few loops, as
 // soon as it can be.
 constexpr Index kFirst = kFewLoops;
 constexpr Index kGrowth = 2;
-constexpr Index kMostGrowth = 4;
+constexpr Index kMostGrowth = 8;
 constexpr double kUntil = 0.05;
 constexpr Index kFew = 32;
 

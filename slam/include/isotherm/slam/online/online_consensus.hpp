@@ -26,7 +26,7 @@ struct OnlineOptions {
   /// Work while edges come, in times of one batch's on what has come; in [0, 100]. A third of it
   /// may follow up on new loops, the rest searches the whole. With 0 that is done only where there
   /// are four times as many loops. finish() comes on top.
-  double effort = 3.0;
+  double effort = 2.5;
 
   /// @throws InvalidArgument naming the field that is out of range.
   void validate() const;
