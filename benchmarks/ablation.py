@@ -9,14 +9,10 @@ Runs are kept in build/ablation, so that an interrupted run goes on where it sto
 """
 
 import csv
-import dataclasses
 import functools
 import json
 import pathlib
 import random
-import re
-import shutil
-import subprocess
 import sys
 import tempfile
 
@@ -24,22 +20,13 @@ from corrupted import TYPES, counted, precision_recall, true_loops
 from harm import FEW, SMALL, path_of
 from support import variants
 from support.experiment import ROOT, argument_parser
+from support.instrumented import PREFIX, Changed, Constant, build, read_from_environment, replace
 from support.runs import Command, Results, read_csv, run_all
 
 SEED = 7  # of variants and of false loops
 EVERY = 12  # cells of all, so that it takes an hour
 ROOM = pathlib.Path("slam/src/prune/consensus")
-PREFIX = "ISOTHERM_"
 NATS = 1.0
-
-
-@dataclasses.dataclass(frozen=True)
-class Constant:
-    name: str
-    value: str
-    meaning: str
-    tried: tuple  # text of C++ or a number a run
-
 
 CONSTANTS = [
     Constant("kScaleDeviation", "2 ln 10",
@@ -65,34 +52,9 @@ FLAGS = {"window 5": ["--window", 5], "window 80": ["--window", 80],
          "scales as stated": ["--no-calibrate"]}
 
 
-def from_environment(text, constant):
-    """The source with the constant read when the program starts."""
-    pattern = rf"(inline )?constexpr ([\w:]+) {constant.name} = ([^;]+);"
-    code = (r"\1const \2 " + constant.name + r" = [] { const char* text = std::getenv(""" +
-            f'"{PREFIX}{constant.name}"' +
-            r"""); return text ? static_cast<\2>(std::strtod(text, nullptr)) : static_cast<\2>(\3); }();""")
-    changed, count = re.subn(pattern, code, text)
-    if count != 1:
-        raise RuntimeError(f"constants.hpp has no {constant.name}")
-    return changed
-
-
-def replace(path, pairs):
-    text = path.read_text("utf-8")
-    for before, after in pairs:
-        if before not in text:
-            raise RuntimeError(f"{path.name} does not hold {before!r}")
-        text = text.replace(before, after)
-    path.write_text(text, "utf-8")
-
-
 def instrument(tree):
     room = tree / ROOM
-    text = (room / "constants.hpp").read_text("utf-8")
-    for constant in CONSTANTS:
-        text = from_environment(text, constant)
-    (room / "constants.hpp").write_text(
-        text.replace("#pragma once\n", "#pragma once\n#include <cstdlib>\n", 1), "utf-8")
+    read_from_environment(room / "constants.hpp", CONSTANTS)
     # What follows from them is no longer known to the compiler.
     replace(room / "climb/learn.cpp", [("constexpr double kMostApart", "const double kMostApart")])
     replace(room / "objective/scale_prior.hpp",
@@ -110,20 +72,6 @@ def instrument(tree):
              ("#pragma once\n", "#pragma once\n#include <cstdlib>\n")])
 
 
-def build(folder):
-    """The command with its constants in the environment."""
-    tree = folder / "tree"
-    if not tree.exists():
-        files = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True,
-                               check=True).stdout.split("\0")
-        for name in filter(None, files):
-            (tree / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(ROOT / name, tree / name)
-        instrument(tree)
-    subprocess.run([tree / "scripts/build.sh", "release"], check=True)
-    return tree / "build/release/apps/isotherm"
-
-
 def prepare(command, data, graph, variant, kind, cells):
     """Writes the graph of a cell and its labels, once; how it went, as run_all() wants it."""
     name = f"{graph}-{variant}-{kind}"
@@ -138,17 +86,6 @@ def prepare(command, data, graph, variant, kind, cells):
         command.run("corrupt", clean, "-o", cells / f"{name}.g2o", "--labels",
                     cells / f"{name}.csv", "--seed", SEED, *fraction)
     return {"file": str(cells / name)}
-
-
-class Changed(Command):
-    """The command with other constants."""
-
-    def __init__(self, path, environment):
-        super().__init__("env", 600)
-        self.words = [f"{PREFIX}{key}={value}" for key, value in environment.items()] + [str(path)]
-
-    def run(self, *arguments):
-        return super().run(*self.words, *arguments)
 
 
 def measure(command, flags, cells):
@@ -188,8 +125,8 @@ def page(base, rows, cell_count):
              "|---|---|---|---|---|---|---|---|---|---|---|",
              line_of("as they are", "", "", "", base, base, True)]
     for constant in CONSTANTS:
-        model = constant.name in ("kScaleDeviation", "kScaleStep", "kLoopsBefore", "kReach",
-                                  "kNodes")
+        model = constant.name in ("kScaleDeviation", "kScaleStep", "kLoopsBefore", "kTailDof",
+                                  "kReach", "kNodes")
         lines += [line_of(f"`{constant.name}`", constant.meaning, constant.value, f"{value:g}",
                           rows[f"{constant.name}={value:g}"], base, not model)
                   for value in constant.tried if f"{constant.name}={value:g}" in rows]
@@ -219,7 +156,7 @@ def main():
     folder = ROOT / "build" / "ablation"
     cells = folder / "cells"
     cells.mkdir(parents=True, exist_ok=True)
-    program = options.isotherm or build(folder)
+    program = options.isotherm or build(folder, instrument)
     known = Results(folder / "prepared")
     kinds = [(graph, variant, kind) for graph in SMALL for variant in variants.VARIANTS
              for kind in ("clean", *TYPES)][::options.every]
