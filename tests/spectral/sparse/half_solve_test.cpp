@@ -12,6 +12,7 @@ namespace {
 using Pairs = std::vector<std::pair<Index, Index>>;
 
 constexpr int kDof = 3;
+constexpr double kDiagonal = 30.0;  // enough where every two blocks are joined
 
 // A grid, whose elimination tree branches, in place of a larger map.
 Pairs grid(Index side) {
@@ -29,9 +30,9 @@ Pairs grid(Index side) {
 BlockCholesky factor_of(const Pairs& pairs, Index count, Eigen::MatrixXd& dense) {
   Random random(6);
   BlockCholesky blocks(kDof, count, pairs, FactorForm::supernodal);
-  dense = 10.0 * Eigen::MatrixXd::Identity(count * kDof, count * kDof);
+  dense = kDiagonal * Eigen::MatrixXd::Identity(count * kDof, count * kDof);
   for (Index k = 0; k < count; ++k) {
-    blocks.add_diagonal(k, (10.0 * Eigen::Matrix3d::Identity()).eval());
+    blocks.add_diagonal(k, (kDiagonal * Eigen::Matrix3d::Identity()).eval());
   }
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     Eigen::Matrix3d block;
@@ -67,10 +68,9 @@ Eigen::MatrixXd inverse_of(const FrontTree& tree, Eigen::Index most_entries, int
   return inverse;
 }
 
-void expect_inverse(Index side, Eigen::Index most_entries) {
-  const Index count = side * side;
+void expect_inverse(const Pairs& pairs, Index count, Eigen::Index most_entries) {
   Eigen::MatrixXd dense;
-  const BlockCholesky blocks = factor_of(grid(side), count, dense);
+  const BlockCholesky blocks = factor_of(pairs, count, dense);
   const FrontTree tree(blocks);
   const Eigen::MatrixXd inverse = inverse_of(tree, most_entries, 1);
   EXPECT_LT((inverse - dense.inverse()).norm(), 1e-12);
@@ -78,12 +78,20 @@ void expect_inverse(Index side, Eigen::Index most_entries) {
 }
 
 TEST(HalfSolve, RowsMultiplyToTheInverse) {
-  expect_inverse(1, 1 << 20);
-  expect_inverse(4, 1 << 20);
-  expect_inverse(9, 1 << 20);
+  for (const Index side : {1, 4, 9}) expect_inverse(grid(side), side * side, 1 << 20);
 }
 
-TEST(HalfSolve, RowsMayComeInSlabs) { expect_inverse(9, 0); }
+TEST(HalfSolve, RowsMayComeInSlabs) { expect_inverse(grid(9), 81, 0); }
+
+// More than are solved for at once: one front, of all.
+TEST(HalfSolve, SlabsMayBeMany) {
+  constexpr Index kCount = 60;
+  Pairs pairs;
+  for (Index a = 0; a < kCount; ++a) {
+    for (Index b = a + 1; b < kCount; ++b) pairs.emplace_back(a, b);
+  }
+  expect_inverse(pairs, kCount, 0);
+}
 
 TEST(PairPlan, HalfSolvesWhereManyPairsMeet) {
   const Index side = 12;

@@ -669,8 +669,6 @@ TEST(Consensus, KeepsTogetherWhatIsUndecidedAlone) {
   EXPECT_GE(count(result.verdicts, Verdict::keep), 52);
 }
 
-// Copies of one false measurement hold each other up, where a gyroscope drifts: two groups of ten
-// were thought true, of 53 nats less than the labels.
 // A robot drives twice around a block, with loops where it comes by again and more where it looks
 // to a detector as if it had not moved: each of these says, a little differently, that it is where
 // it was 20 m before. Odometry that is bad enough, or loops that are, would explain all of them.
@@ -716,6 +714,8 @@ TEST(Consensus, PlacesThatLookAlikeAlongTheWayAreNotOne) {
   EXPECT_EQ(metrics.fn, 0);
 }
 
+// Copies of one false measurement hold each other up, where a gyroscope drifts: two groups of ten
+// were thought true, of 53 nats less than the labels.
 TEST(Consensus, DropsRunsOfCopies) {
   ISOTHERM_REAL_DATA_OR_SKIP(path, "paper/b25b/B25b_0.600.g2o");
   auto graph = std::get<PoseGraph<Pose2>>(read_pose_graph(path.string()).graph);

@@ -25,7 +25,7 @@ struct OnlineOptions {
   ConsensusOptions consensus;
   /// Work while edges come, in times of one batch's on what has come; in [0, 100]. A third of it
   /// may follow up on new loops, the rest searches the whole. With 0 that is done only where there
-  /// are four times as many loops. finish() comes on top.
+  /// are eight times as many loops. finish() comes on top.
   double effort = 2.5;
 
   /// @throws InvalidArgument naming the field that is out of range.

@@ -276,7 +276,8 @@ void Assessment<Pose>::find_redundancy(Explanation<Pose>& now) const {
 // Given all loops but itself, in what is known of the accuracy of odometry, too.
 template <class Pose>
 Standing Assessment<Pose>::accepted_standing(const Explanation<Pose>& now, Index loop) const {
-  const auto others = without(belief(loop), information(now, loop));
+  const auto all = belief(loop);
+  const auto others = without(all, information(now, loop));
   const typename Pose::Tangent own = redundancy(now, loop);
   const double learnt = 1.0 - now.weights[loop].stated;
   const Redundancy<Pose> told{
@@ -286,7 +287,7 @@ Standing Assessment<Pose>::accepted_standing(const Explanation<Pose>& now, Index
       loop_gain(others, own_error(loop), found_.mixture, objective_.scale_deviation(told));
   // Alone it would join parts that lie anywhere on the map.
   const double density = std::max(gain.log_density, -objective_.log_volume() - 0.5 * gain.chi2);
-  const double nearer = objective_.log_nearer(loop, estimate_.residual(graph().loops[loop]));
+  const double nearer = objective_.log_nearer(loop, all.r);
   return {.chi2 = gain.chi2,
           .evidence = density + nearer - log_alternative(loop),
           .weight = gain.weight};

@@ -97,11 +97,10 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   }
   const auto nothing = [&] { return climb.nothing(least_that_tells(found)); };
   const auto astray = [&] {
-    const auto* none = found.empty() ? nullptr : nothing();
-    const auto no_better = [&](const auto& peak) {
-      return none && peak.evidence <= none->evidence;
-    };
-    return std::ranges::all_of(found, no_better);
+    if (found.empty()) return true;
+    const auto* none = nothing();
+    return none && std::ranges::all_of(
+                       found, [&](const auto& peak) { return peak.evidence <= none->evidence; });
   };
   if (astray()) {
     climb_from_each_start(calibrate, try_from);

@@ -107,6 +107,9 @@ void NearDensity<Pose>::fit(const ReducedGraph<Pose>& graph) {
     alike.deviation[d] = std::sqrt(square);
     near.deviation[d] = std::sqrt(square + step[d]);
   }
+  for (Kernel& kernel : kernels_) {
+    kernel.log_peak = -kernel.deviation.array().log().sum() - 0.5 * Pose::kDof * kLog2Pi;
+  }
 }
 
 template <class Pose>
@@ -154,14 +157,9 @@ double NearDensity<Pose>::log_at(const Pose& T) const {
   const Tangent off = offset(T);
   const auto log_part = [&off](const Kernel& kernel) {
     const double square = off.cwiseQuotient(kernel.deviation).squaredNorm();
-    return kernel.log_peak() - 0.5 * (kTailDof + Pose::kDof) * std::log1p(square / kTailDof);
+    return kernel.log_peak - 0.5 * (kTailDof + Pose::kDof) * std::log1p(square / kTailDof);
   };
   return log_sum(log_part(kernels_[0]), log_part(kernels_[1]));
-}
-
-template <class Pose>
-double NearDensity<Pose>::Kernel::log_peak() const {
-  return -deviation.array().log().sum() - 0.5 * Pose::kDof * kLog2Pi;
 }
 
 template <class Pose>
@@ -225,7 +223,7 @@ std::array<double, kProposalClasses> NearDensity<Pose>::log_mean(
   std::array<double, kProposalClasses> result;
   for (std::size_t c = 0; c < kProposalClasses; ++c) {
     const auto log_part = [&](std::size_t k) {
-      return kernels_[k].log_peak() + std::log(counts[k].near[c] / counts[k].pairs[c]);
+      return kernels_[k].log_peak + std::log(counts[k].near[c] / counts[k].pairs[c]);
     };
     result[c] = log_sum(log_part(0), log_part(1)) - std::log(2.0);
   }

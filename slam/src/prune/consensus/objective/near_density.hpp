@@ -58,7 +58,7 @@ class NearDensity {
   /// One of the two distributions around the median.
   struct Kernel {
     Tangent deviation;
-    double log_peak() const;
+    double log_peak = 0.0;
     double over_peak(const Tangent& off) const;
     double squared_reach() const;  ///< of translation
   };
