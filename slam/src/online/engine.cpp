@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <utility>
 
 #include "isotherm/base/error.hpp"
+#include "isotherm/base/statistics.hpp"
 #include "online/present_map.hpp"
 #include "prune/consensus/climb/report.hpp"
 #include "prune/consensus/constants.hpp"
@@ -220,25 +220,19 @@ void OnlineEngine<Pose>::adopt(std::shared_ptr<Snapshot<Pose>> map) {
   judge_since(seen);
 }
 
-// Each run once, with all its loops.
 template <class Pose>
 void OnlineEngine<Pose>::judge_since(Index first) {
-  std::vector<Index> loops;
-  std::vector<Index> others;
+  std::vector<Index> repeats;
   for (Index k = first; k < static_cast<Index>(rows_.size()); ++k) {
     const auto& edge = log_.edges()[k];
     if (edge.step) continue;
-    const bool in_run = outlook_ && edge.from != edge.to && !log_.repeated_by(edge);
-    if (in_run) consider(k);
-    (in_run ? loops : others).push_back(k);
+    if (log_.repeated_by(edge)) {
+      repeats.push_back(k);
+    } else {
+      judge(k);
+    }
   }
-  std::set<Index> judged;
-  for (const Index k : loops) {
-    if (judged.contains(k)) continue;
-    judge_run(k);
-    for (const auto& [edge, log_odds] : runs_.log_odds(k)) judged.insert(edge);
-  }
-  for (const Index k : others) judge(k);
+  for (const Index k : repeats) judge(k);
 }
 
 // Adds a loop to those that are not accepted, behind those before it in its run.
@@ -285,6 +279,15 @@ void OnlineEngine<Pose>::take_over(const PruneResult& result) {
   }
 }
 
+// Whether later loops may be judged by a loop: what is beyond what the map tells of its own errors is
+// not, however many others say the same, as the map is wrong then, and others hang on that.
+template <class Pose>
+bool OnlineEngine<Pose>::may_follow(Index edge) const {
+  const double within = chi_squared_quantile(1.0 - options_.consensus.significance, Pose::kDof);
+  return rows_[edge].now->verdict == spectral::Verdict::keep &&
+         standings_.at(edge).chi2 <= within;
+}
+
 // A loop that came after the snapshot, by that and the others that came.
 template <class Pose>
 void OnlineEngine<Pose>::judge(Index number) {
@@ -303,7 +306,9 @@ void OnlineEngine<Pose>::judge(Index number) {
     row.stage = "repeat";
   } else if (outlook_) {
     consider(number);
-    return judge_run(number);
+    judge_run(number);
+    if (may_follow(number)) outlook_->follow(number);
+    return;
   }
   set(std::move(row), {});
 }

@@ -78,6 +78,7 @@ class OnlineEngine {
   void judge(Index edge);
   void judge_run(Index edge);
   void consider(Index edge);
+  bool may_follow(Index edge) const;
   void judge_since(Index first);
   bool has_news() const;
   bool is_accepted(Index edge) const;

@@ -26,6 +26,12 @@ typename Pose::Matrix scaled(const typename Pose::Matrix& covariance,
   return deviations.asDiagonal() * covariance * deviations.asDiagonal();
 }
 
+// Whether one is known better than the other.
+template <class Pose>
+bool is_closer(const UncertainPose<Pose>& one, const UncertainPose<Pose>& other) {
+  return one.covariance.determinant() < other.covariance.determinant();
+}
+
 }  // namespace
 
 template <class Pose>
@@ -116,6 +122,21 @@ UncertainPose<Pose> Outlook<Pose>::between(const Place& a, const Place& b) const
   return {T_a_b, covariance + across * a.at.covariance * across.transpose() + b.at.covariance};
 }
 
+// Only the way from the map changes, not how many steps ago the map was left.
+template <class Pose>
+void Outlook<Pose>::follow(Index edge) {
+  const auto loop = forward(edge);
+  const auto from = place(loop.from);
+  const auto to = place(loop.to);
+  if (!from || !to || to->steps == 0) return;
+  const auto at = compose(from->at, loop.measured);
+  if (!is_closer(at, to->at)) return;
+  Place& known = places_.at(loop.to);
+  known.node = from->node;
+  known.part = from->part;
+  known.at = at;
+}
+
 template <class Pose>
 Standing Outlook<Pose>::standing(Index edge) const {
   if (const auto loop = loop_of(edge)) return map_.best().standings[*loop];
@@ -135,7 +156,10 @@ Standing Outlook<Pose>::standing(Index edge) const {
   const Matrix stated = covariance_from_information<Pose::kDof>(measured.information);
   Standing standing{.parts = {0, 0}};
   double density = -map_.objective().log_volume();
-  if (!path && a && b && a->part == b->part) path = between(*a, *b);
+  if (a && b && a->part == b->part) {
+    const auto across = between(*a, *b);
+    if (!path || is_closer(across, *path)) path = across;
+  }
   if (path) {
     const typename Pose::Tangent r = (measured.T_from_to.inverse() * path->T).log();
     const Matrix J = residual_jacobian<Pose>(r);

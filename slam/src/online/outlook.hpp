@@ -25,6 +25,10 @@ class Outlook {
   /// it would be as likely false as true if the map were known.
   double chi2_at_even_odds(Index edge) const;
 
+  /// Takes an edge that has come since for true: from here on its later vertex is known by it, where
+  /// that is known better so than along odometry.
+  void follow(Index edge);
+
   /// The log odds of any loop being true.
   double prior() const noexcept { return prior_; }
 

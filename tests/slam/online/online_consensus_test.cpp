@@ -234,6 +234,45 @@ TYPED_TEST(OnlineConsensusOf, PlacesPosesByLoopsThatAreNew) {
   EXPECT_LT(isotherm_test::worst_difference(online.graph().poses, optimum), 0.5 * drift);
 }
 
+// A false loop is within the drift since the last search, but not within what a loop leaves of it
+// that was kept meanwhile.
+TYPED_TEST(OnlineConsensusOf, JudgesByLoopsThatWereKeptSince) {
+  using Pose = TypeParam;
+  const Index left = 100;  // the map
+  const Index back = 130;
+  for (const bool comes_back : {true, false}) {
+    Random random(19);
+    const auto made = random_loop_graph<Pose>(random, 140, 200, 1.0);
+    const typename Pose::Matrix information = 1e4 * Pose::Matrix::Identity();
+    OnlineConsensus<Pose> online({.effort = 0.0});
+    const auto add_loop = [&](Index from, Index to, const Pose& error) {
+      const Pose T_from_to = made.truth[from].inverse() * made.truth[to] * error;
+      const auto& ids = made.graph.ids;
+      return online.add_loop(ids[from], ids[to], T_from_to, information).front().verdict;
+    };
+    const auto& edges = made.graph.constraints;
+    const auto ends_by = [&edges](Index k, Index last) {
+      return std::max(edges[k].from, edges[k].to) <= last;
+    };
+    const auto roles = edge_roles(made.graph);
+    Index step = 0;
+    for (; ends_by(roles.odometry[step], left); ++step)
+      add(online, made.graph, edges[roles.odometry[step]]);
+    for (const Index k : roles.candidates) {
+      if (ends_by(k, left)) add(online, made.graph, edges[k]);
+    }
+    online.catch_up();
+    for (Index k = left; k <= back; ++k) {
+      if (comes_back && k > back - 8) add_loop(k - 90, k, Pose());
+      add(online, made.graph, edges[roles.odometry[step++]]);
+    }
+    typename Pose::Tangent wrong = Pose::Tangent::Zero();
+    wrong[0] = 0.3;
+    const auto told = add_loop(90, back + 1, Pose::exp(wrong));
+    EXPECT_EQ(told.verdict == Verdict::prune, comes_back) << told.probability;
+  }
+}
+
 TYPED_TEST(OnlineConsensusOf, PlacesPosesFromThoseThatAreTold) {
   using Pose = TypeParam;
   Random random(17);
