@@ -20,6 +20,11 @@ Eigen::Matrix<double, Dof, 1> deviations(const Eigen::Matrix<double, Dof, Dof>& 
   return information.diagonal().cwiseMax(largest / kWidestDiagonal).cwiseSqrt();
 }
 
+template <class Matrix>
+double one_norm(const Matrix& matrix) {
+  return matrix.cwiseAbs().colwise().sum().maxCoeff();
+}
+
 // With unit diagonal, so that metres and radians do not matter.
 template <int Dof>
 Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, Dof, Dof>> scaled_eigen(
@@ -41,9 +46,10 @@ Eigen::Matrix<double, Dof, Dof> covariance_from_information(
   }
   // Well-conditioned matrices, nearly all in practice, need no eigenvectors.
   const Eigen::LLT<Matrix> factor(information);
-  if (factor.info() == Eigen::Success && factor.rcond() > 1e-10 &&
+  if (factor.info() == Eigen::Success &&
       information.diagonal().minCoeff() > 1.0 / kUnknownVariance) {
-    return factor.solve(Matrix::Identity());
+    const Matrix inverse = factor.solve(Matrix::Identity());
+    if (one_norm(information) * one_norm(inverse) < 1e10) return inverse;
   }
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(information);
   const double largest = std::max(eigen.eigenvalues().cwiseAbs().maxCoeff(), 0.0);

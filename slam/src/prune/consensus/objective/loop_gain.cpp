@@ -69,6 +69,14 @@ double log_density(const Prediction<Pose>& prediction, const Factors& own,
   return log_sum_of(by_odometry) - 0.5 * (log_sigma + Pose::kDof * kLog2Pi);
 }
 
+// Where there is nothing to integrate over no axes are needed.
+template <class Pose>
+double log_density_as_stated(const Belief<Pose>& others, const OwnError<Pose>& own,
+                             const Factors& odometry) {
+  if (odometry.value.size() == 1) return log_normal<Pose>(others.r, others.P + own.stated);
+  return log_density(predict<Pose>(others, own.stated), factors(0.0), odometry);
+}
+
 }  // namespace
 
 template <class Pose>
@@ -121,8 +129,7 @@ LoopGain loop_gain(const Belief<Pose>& others, const OwnError<Pose>& own,
     density[j] = mixture.log_share[j] + log_density(learnt, scales, odometry);
   }
   if (mixture.has(kAsStated)) {
-    const auto stated = predict<Pose>(others, own.stated);
-    density[kAsStated] = mixture.log_share[kAsStated] + log_density(stated, factors(0.0), odometry);
+    density[kAsStated] = mixture.log_share[kAsStated] + log_density_as_stated(others, own, odometry);
   }
   LoopGain gain;
   gain.log_density = log_sum_of(Nodes::Map(density.data(), kScaleCount));
