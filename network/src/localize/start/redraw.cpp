@@ -70,25 +70,19 @@ struct Part {
 };
 
 // Nothing where its outermost nodes do not say where it lies.
-Placement draw(const Part& part, Drawing drawing, Errors errors, double gate,
-               const LocalizeOptions& options) {
-  if (drawing == Drawing::springs) {
-    auto map = part.placement;
-    unfold(part.problem, part.trusted, errors, gate, options, map);
-    return map;
-  }
+Placement draw(const Part& part, double gate, const LocalizeOptions& options) {
   auto free = part.problem;
   free.is_anchor.assign(free.nodes, false);
-  auto map = map_by_paths(free, part.trusted, part.trusted, errors, gate, options);
+  auto map = map_by_paths(free, part.trusted, part.trusted, Errors::any, gate, options);
   if (!align_to_anchors(part.problem, part.placement, map)) return {};
   return map;
 }
 
 }  // namespace
 
-Placement redraw(const RangeProblem& problem, const std::vector<bool>& trusted, Drawing drawing,
-                 Errors errors, const std::vector<bool>& among, double gate,
-                 const LocalizeOptions& options, const Placement& placement) {
+Placement redraw(const RangeProblem& problem, const std::vector<bool>& trusted,
+                 const std::vector<bool>& among, double gate, const LocalizeOptions& options,
+                 const Placement& placement) {
   std::vector<int> against(problem.nodes, 0);
   for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
     const auto& pair = problem.pairs[p];
@@ -119,7 +113,7 @@ Placement redraw(const RangeProblem& problem, const std::vector<bool>& trusted, 
                  const Part part(problem, trusted, placement, regions[k]);
                  auto quiet = options;
                  quiet.progress = {};
-                 maps[k] = draw(part, drawing, errors, gate, quiet);
+                 maps[k] = draw(part, gate, quiet);
                });
   auto result = placement;
   for (std::size_t k = 0; k < regions.size(); ++k) {

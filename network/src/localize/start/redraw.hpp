@@ -6,16 +6,14 @@
 
 namespace isotherm::network::detail {
 
-/// How a region is drawn: from its shortest paths, or as springs from where it is.
-enum class Drawing { paths, springs };
-
 /// The map with the surroundings of what contradicts it drawn anew: around the node with the most
 /// trusted pairs beyond the gate, then around the next one that is in no such region, all within
-/// some steps as a network of its own, whose outermost nodes say where it lies. Paths are short in
-/// a region: there a part comes to its place that in the large map turned the wrong way. Only
-/// regions around nodes in `among` count: those near what has changed since they were drawn last.
-Placement redraw(const RangeProblem& problem, const std::vector<bool>& trusted, Drawing drawing,
-                 Errors errors, const std::vector<bool>& among, double gate,
-                 const LocalizeOptions& options, const Placement& placement);
+/// some steps from its shortest paths as a network of its own, whose outermost nodes say where it
+/// lies. Paths are short in a region: there a part comes to its place that in the large map turned
+/// the wrong way. Only regions around nodes in `among` count: those near what has changed since
+/// they were drawn last.
+Placement redraw(const RangeProblem& problem, const std::vector<bool>& trusted,
+                 const std::vector<bool>& among, double gate, const LocalizeOptions& options,
+                 const Placement& placement);
 
 }  // namespace isotherm::network::detail

@@ -103,12 +103,7 @@ class Search {
   bool consider_redrawn() {
     const auto among = within_steps(problem_, changed_since(redrawn_), kRegionSteps, trusted_);
     redrawn_ = best_;
-    const auto drawn = [&](Drawing drawing, Errors errors) {
-      return merge(redraw(problem_, trusted_, drawing, errors, among, gate_, options_, best_));
-    };
-    bool any = drawn(Drawing::paths, Errors::any);
-    any = drawn(Drawing::paths, Errors::too_long) || any;
-    return drawn(Drawing::springs, best_errors_) || any;
+    return merge(redraw(problem_, trusted_, among, gate_, options_, best_));
   }
 
   // Nodes that are elsewhere in the best map; all since there was none.

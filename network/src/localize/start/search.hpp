@@ -21,9 +21,8 @@ std::vector<bool> supported_pairs(const RangeProblem& problem, const std::vector
 /// trusted pair contradicts that one, of the same as ranges that may be too long, of all that heat
 /// leaves, and of those that the best map does not contradict. Each is refined, and of two maps
 /// each part is taken from where it is likelier. So is what comes of mirroring parts of the best
-/// map, unfolding it again, and drawing regions of it anew, from their paths or as springs from
-/// where they are, as long as that helps. Plain least squares has the first map as it is. @throws
-/// Cancelled
+/// map, unfolding it again, and drawing regions of it anew, as long as that helps. Plain least
+/// squares has the first map as it is. @throws Cancelled
 Placement search_map(const RangeProblem& problem, const Placement& anchors,
                      const std::vector<bool>& trusted, double gate, const LocalizeOptions& options);
 
