@@ -19,13 +19,6 @@ namespace {
 // Loops before a new one among which it can be a copy of one.
 constexpr Index kRecent = 64;
 
-template <class Pose>
-typename Pose::Matrix scaled(const typename Pose::Matrix& covariance,
-                             const typename Pose::Tangent& variances) {
-  const typename Pose::Tangent deviations = variances.cwiseSqrt();
-  return deviations.asDiagonal() * covariance * deviations.asDiagonal();
-}
-
 // Whether one is known better than the other.
 template <class Pose>
 bool is_closer(const UncertainPose<Pose>& one, const UncertainPose<Pose>& other) {
@@ -140,20 +133,12 @@ void Outlook<Pose>::follow(Index edge) {
 template <class Pose>
 Standing Outlook<Pose>::standing(Index edge) const {
   if (const auto loop = loop_of(edge)) return map_.best().standings[*loop];
-  const auto& told = log_.edges()[edge];
-  auto measured = told.measured;
-  measured.from = 0;
-  measured.to = 1;
-  measured = in_own_frame(measured);
-  const VertexId from = measured.from == 0 ? told.from : told.to;
-  const VertexId to = measured.from == 0 ? told.to : told.from;
-  const auto a = place(from);
-  const auto b = place(to);
-  auto path = steps(from, to, false);
+  const Told loop = told(edge);
+  const auto a = place(loop.from);
+  const auto b = place(loop.to);
+  auto path = steps(loop.from, loop.to, false);
   const auto& best = map_.best();
   const auto& assessment = map_.assessment();
-  const Matrix learnt = covariance_of(measured);
-  const Matrix stated = covariance_from_information<Pose::kDof>(measured.information);
   Standing standing{.parts = {0, 0}};
   double density = -map_.objective().log_volume();
   if (a && b && a->part == b->part) {
@@ -161,18 +146,19 @@ Standing Outlook<Pose>::standing(Index edge) const {
     if (!path || is_closer(across, *path)) path = across;
   }
   if (path) {
-    const typename Pose::Tangent r = (measured.T_from_to.inverse() * path->T).log();
+    const typename Pose::Tangent r = (loop.T_from_to.inverse() * path->T).log();
     const Matrix J = residual_jacobian<Pose>(r);
     const Belief<Pose> others{r, J * path->covariance * J.transpose()};
-    const auto gain = loop_gain<Pose>(others, {learnt, stated}, assessment.findings().mixture,
-                                      map_.objective().scale_deviation(best.redundancy));
+    const auto gain =
+        loop_gain<Pose>(others, {loop.learnt, loop.stated}, assessment.findings().mixture,
+                        map_.objective().scale_deviation(best.redundancy));
     standing.chi2 = gain.chi2;
     density = gain.log_density;
     if (!is_copied(edge)) {
-      const Matrix Omega = gain.weight.learnt / best.scale.loops * learnt.inverse() +
-                           gain.weight.stated * measured.information;
+      const Matrix Omega = gain.weight.learnt / best.scale.loops * loop.learnt.inverse() +
+                           gain.weight.stated * loop.information;
       density += map_.objective().near_density().log_nearer(
-          measured.T_from_to, residual_with(others, Omega), from <= to);
+          loop.T_from_to, residual_with(others, Omega), loop.from <= loop.to);
     }
   } else {
     standing.parts.second = 1;
@@ -184,15 +170,23 @@ Standing Outlook<Pose>::standing(Index edge) const {
 
 template <class Pose>
 double Outlook<Pose>::chi2_at_even_odds(Index edge) const {
-  const Matrix Sigma = map_.best().scale.loops * covariance_of(log_.edges()[edge].measured);
+  const Matrix Sigma = map_.best().scale.loops * told(edge).learnt;
   const double density = log_normal<Pose>(Pose::Tangent::Zero(), Sigma);
   return std::max(2.0 * (density - log_alternative(edge) + prior_), 0.0);
 }
 
 template <class Pose>
-typename Pose::Matrix Outlook<Pose>::covariance_of(const Constraint<Pose>& measured) const {
-  return scaled<Pose>(covariance_from_information<Pose::kDof>(measured.information),
-                      map_.best().shapes.loops);
+typename Outlook<Pose>::Told Outlook<Pose>::told(Index edge) const {
+  const auto& [from, to, measured, step] = log_.edges()[edge];
+  auto known = measured;
+  known.from = 0;
+  known.to = 1;
+  known = in_own_frame(known);
+  const bool turned = known.from != 0;
+  const Matrix stated = covariance_from_information<Pose::kDof>(known.information);
+  const typename Pose::Tangent root = map_.best().shapes.loops.cwiseSqrt();
+  return {turned ? to : from, turned ? from : to, known.T_from_to, known.information, stated,
+          root.asDiagonal() * stated * root.asDiagonal()};
 }
 
 // The density that the loop's is held against.
@@ -201,15 +195,14 @@ double Outlook<Pose>::log_alternative(Index edge) const {
   if (const auto loop = loop_of(edge)) {
     return map_.assessment().log_alternative(static_cast<Index>(*loop));
   }
-  const auto& [from, to, measured, step] = log_.edges()[edge];
+  const auto& own = log_.edges()[edge];
   if (is_copied(edge)) {
-    const double log_sigma = log_determinant(Eigen::LLT<Matrix>(covariance_of(measured))) +
-                             Pose::kDof * std::log(map_.best().scale.loops);
-    return log_copy_density<Pose>(log_sigma);
+    const Matrix Sigma = map_.best().scale.loops * told(edge).learnt;
+    return log_copy_density<Pose>(log_determinant(Eigen::LLT<Matrix>(Sigma)));
   }
   const Place nowhere{.chain = -1};
-  const Place a = place(from).value_or(nowhere);
-  const Place b = place(to).value_or(nowhere);
+  const Place a = place(own.from).value_or(nowhere);
+  const Place b = place(own.to).value_or(nowhere);
   const Index apart = std::abs((a.position + a.steps) - (b.position + b.steps));
   const std::size_t group = a.chain == b.chain ? span_class(apart) : kSpanClasses;
   return map_.assessment().findings().near[group];
@@ -231,8 +224,8 @@ bool Outlook<Pose>::is_open(Index edge) const {
     const auto loop = loop_of(edge);
     return loop && !map_.best().accepted[*loop];
   }
-  const auto& told = log_.edges()[edge];
-  return told.from != told.to && !log_.repeated_by(told);
+  const auto& other = log_.edges()[edge];
+  return other.from != other.to && !log_.repeated_by(other);
 }
 
 // The loops just before it whose ends are near its own.
@@ -269,17 +262,10 @@ bool Outlook<Pose>::is_copied(Index edge) const {
 
 template <class Pose>
 typename Outlook<Pose>::Forward Outlook<Pose>::forward(Index edge) const {
-  const auto& told = log_.edges()[edge];
-  auto measured = told.measured;
-  measured.from = 0;
-  measured.to = 1;
-  measured = in_own_frame(measured);
-  const UncertainPose<Pose> pose{measured.T_from_to,
-                                 map_.best().scale.loops * covariance_of(measured)};
-  const VertexId from = measured.from == 0 ? told.from : told.to;
-  const VertexId to = measured.from == 0 ? told.to : told.from;
-  if (from <= to) return {from, to, pose};
-  return {to, from, inverse(pose)};
+  const Told loop = told(edge);
+  const UncertainPose<Pose> pose{loop.T_from_to, map_.best().scale.loops * loop.learnt};
+  if (loop.from <= loop.to) return {loop.from, loop.to, pose};
+  return {loop.to, loop.from, inverse(pose)};
 }
 
 // Of the other's measurement, as the known one and the odometry between their ends predict it.

@@ -58,7 +58,17 @@ class Outlook {
   std::optional<Place> place(VertexId id) const;
   std::optional<Place> known_place(VertexId id) const;
   std::optional<UncertainPose<Pose>> steps(VertexId from, VertexId to, bool on_map) const;
-  Matrix covariance_of(const Constraint<Pose>& measured) const;
+
+  // An edge of the log, told from its own end (in_own_frame()).
+  struct Told {
+    VertexId from = 0;
+    VertexId to = 0;
+    Pose T_from_to;
+    Matrix information;  // as stated
+    Matrix stated;       // its covariance
+    Matrix learnt;       // with the factors on coordinates; but for the scale of loops
+  };
+  Told told(Index edge) const;
 
   // From the vertex of the lower id to the other, at the scales of the snapshot.
   struct Forward {
