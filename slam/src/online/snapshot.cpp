@@ -141,7 +141,7 @@ std::optional<Pose> Snapshot<Pose>::pose(Index vertex) const {
 template <class Pose>
 void Snapshot<Pose>::judge() {
   if (explained()) {
-    refutes_ = can_refute(best_.accepted);
+    refutes_ = can_refute(best_.accepted_count());
     verdicts_.consensus.verdicts = std::move(verdicts_.verdicts);
     report(std::vector<Explanation<Pose>>{best_}, options_.significance, verdicts_.consensus);
     verdicts_.verdicts = std::move(verdicts_.consensus.verdicts);

@@ -85,7 +85,7 @@ void Assessment<Pose>::weigh_at(Explanation<Pose>& now, const CovarianceScale& s
 template <class Pose>
 void Assessment<Pose>::find_nearness(const Explanation<Pose>& now) {
   nearness_found_.assessments += 1.0;
-  const auto accepted = static_cast<std::size_t>(std::ranges::count(now.accepted, true));
+  const std::size_t accepted = now.accepted_count();
   const auto before = found_.near_of;
   const bool same = before && !is_much_more(accepted, *before) && !is_much_more(*before, accepted);
   if (nearness_held_ && same) return;
@@ -206,7 +206,7 @@ typename Pose::Matrix Assessment<Pose>::uncertainty(const Explanation<Pose>& now
 // meet itself they have been composed already.
 template <class Pose>
 void Assessment<Pose>::predict(Explanation<Pose>& now) {
-  const bool alone = std::ranges::count(now.accepted, true) == 0 && found_.graph->is_forest();
+  const bool alone = now.accepted_count() == 0 && found_.graph->is_forest();
   now.standings.resize(now.accepted.size());
   std::vector<Index> solved;
   std::vector<Index> composed;

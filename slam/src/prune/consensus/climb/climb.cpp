@@ -71,7 +71,7 @@ Explanation<Pose> Climb<Pose>::from(const Explanation<Pose>& known, const Covari
 template <class Pose>
 Explanation<Pose> Climb<Pose>::from(Standpoint<Pose> standpoint) {
   stand_on(std::move(standpoint));
-  learnt_from_ = accepted_count();
+  learnt_from_ = now_.accepted_count();
   return climb();
 }
 
@@ -245,7 +245,7 @@ const Explanation<Pose>* Climb<Pose>::grow() {
   for (int round = 0; round < options_.max_rounds; ++round) {
     tell_progress();
     const double before = best_.evidence;
-    const std::size_t had = accepted_count();
+    const std::size_t had = now_.accepted_count();
     const bool settled = had == 0 || assessment_.estimate().settled();
     if (!settled && had >= kMoreTelling * drawn_from_) draw_anew();
     const bool learnt =
@@ -253,7 +253,7 @@ const Explanation<Pose>* Climb<Pose>::grow() {
     if (const auto* known = had > 0 ? peak_ahead(learnt) : nullptr) return known;
     if (!learnt && !move()) return nullptr;
     const double enough = std::max(summit() - best_.evidence, 0.0) / kPatience;
-    const bool grows = 2 * accepted_count() >= 3 * had;
+    const bool grows = 2 * now_.accepted_count() >= 3 * had;
     vain = grows || best_.evidence - before > enough ? 0 : vain + 1;
     if (vain == kPatience || has_fallen_behind()) return nullptr;
   }
@@ -340,7 +340,7 @@ bool Climb<Pose>::weigh_anew() {
 template <class Pose>
 bool Climb<Pose>::accept_many_more(double gain) {
   return once(Trial::many_more, [&] {
-    const Group more = likeliest_together(groups(open()), accepted_count(), now_.accepted.size());
+    const Group more = likeliest_together(groups(open()), now_.accepted_count(), now_.accepted.size());
     return more.gain > std::max(gain, kBetter) && try_all_as(more.loops, true);
   });
 }
@@ -372,23 +372,18 @@ bool Climb<Pose>::drop_undecided() {
       out.insert(out.end(), run.loops.begin(), run.loops.end());
     }
   }
-  return out.size() < accepted_count() && try_all_as(out, false);
+  return out.size() < now_.accepted_count() && try_all_as(out, false);
 }
 
 // Steps that do not settle may be on the way to another minimum than the least.
 template <class Pose>
 void Climb<Pose>::draw_anew() {
-  drawn_from_ = accepted_count();
+  drawn_from_ = now_.accepted_count();
   try {
     const Layout relaxed = assessment_.relaxed(now_);
     try_with([](auto&) {}, kBetter, &relaxed);
   } catch (const NumericalError&) {  // nothing to start from
   }
-}
-
-template <class Pose>
-std::size_t Climb<Pose>::accepted_count() const {
-  return static_cast<std::size_t>(std::ranges::count(now_.accepted, true));
 }
 
 // Whether the evidence reaches `least`.
@@ -461,7 +456,7 @@ std::vector<Group> Climb<Pose>::gaining_groups() const {
 
 template <class Pose>
 Group Climb<Pose>::next_batch() const {
-  return most_certain(gaining_groups(), accepted_count());
+  return most_certain(gaining_groups(), now_.accepted_count());
 }
 
 template <class Pose>
@@ -489,7 +484,7 @@ bool Climb<Pose>::try_all_as(const Selection& loops, bool accepted) {
 template <class Pose>
 bool Climb<Pose>::learn_more_than(double gain) {
   if (!options_.calibrate) return false;
-  learnt_from_ = std::max<std::size_t>(accepted_count(), 1);
+  learnt_from_ = std::max<std::size_t>(now_.accepted_count(), 1);
   const double least = std::max(gain, kBetter);
   for (const Trial trial : {Trial::lesson, Trial::lesson_of_scales}) {
     if (failed_[trial]) continue;
@@ -540,13 +535,13 @@ template <class Pose>
 void Climb<Pose>::note(std::size_t accepted, std::size_t dropped) {
   moves_.push_back({.accepted = static_cast<std::int64_t>(accepted),
                     .dropped = static_cast<std::int64_t>(dropped),
-                    .in_force = static_cast<std::int64_t>(accepted_count())});
+                    .in_force = static_cast<std::int64_t>(now_.accepted_count())});
 }
 
 template <class Pose>
 void Climb<Pose>::tell_progress() const {
   if (!run_.progress) return;
-  if (!run_.progress({"consensus", accepted_count(), now_.accepted.size()})) throw Cancelled();
+  if (!run_.progress({"consensus", now_.accepted_count(), now_.accepted.size()})) throw Cancelled();
 }
 
 template class Climb<Pose2>;

@@ -118,7 +118,6 @@ class Climb {
   bool move();
   bool shift();
   bool assess(double least = -std::numeric_limits<double>::infinity());
-  std::size_t accepted_count() const;
   Selection misfits() const;
   double gain_of_dropping(const Selection& loops) const;
   void drop(const Selection& loops);

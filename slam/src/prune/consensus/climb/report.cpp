@@ -37,9 +37,7 @@ spectral::Verdict verdict_of(bool accepted, double log_odds, double decisive, bo
                                            : spectral::Verdict::ambiguous;
 }
 
-bool can_refute(const std::vector<bool>& accepted) {
-  return std::ranges::count(accepted, true) >= static_cast<std::ptrdiff_t>(kFewLoops);
-}
+bool can_refute(std::size_t accepted) { return accepted >= kFewLoops; }
 
 const char* stage_of(bool accepted, bool connected) {
   if (accepted) return "accepted";
@@ -53,7 +51,7 @@ void report(const std::vector<Explanation<Pose>>& found, double significance,
   const auto& standings = best.standings;
   const auto log_odds = mean_log_odds(found);
   const double decisive = log_odds_of(1.0 - significance);
-  const bool refuting = can_refute(best.accepted);
+  const bool refuting = can_refute(best.accepted_count());
   for (std::size_t k = 0; k < standings.size(); ++k) {
     auto& verdict = result.verdicts[k];
     verdict.score = -log_odds[k];

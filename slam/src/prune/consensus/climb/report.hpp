@@ -13,7 +13,7 @@ namespace isotherm::slam::detail {
 spectral::Verdict verdict_of(bool accepted, double log_odds, double decisive, bool refutable);
 
 /// Whether so many loops are true that they and odometry can speak against others.
-bool can_refute(const std::vector<bool>& accepted);
+bool can_refute(std::size_t accepted);
 
 /// Where the verdict on a loop comes from: accepted, rejected or unconnected.
 const char* stage_of(bool accepted, bool connected);

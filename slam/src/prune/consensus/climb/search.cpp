@@ -5,17 +5,13 @@
 #include <limits>
 #include <optional>
 
+#include "prune/consensus/climb/report.hpp"
 #include "prune/consensus/climb/sample.hpp"
 #include "prune/consensus/climb/starts.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
-
-template <class Pose>
-std::size_t accepted_by(const Explanation<Pose>& explanation) {
-  return static_cast<std::size_t>(std::ranges::count(explanation.accepted, true));
-}
 
 // Best first. One at about the scale of a better one that keeps the same loops is the same peak.
 template <class Pose>
@@ -60,7 +56,7 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole, bool soon) {
   const Objective<Pose> part = objective.of(sampled);
   Climb<Pose> climb = whole.on(part);
   const auto found = search(climb, {.to_the_last = false, .sample_soon = soon});
-  if (accepted_by(found.front()) < kFewLoops) return standpoints;
+  if (!can_refute(found.front().accepted_count())) return standpoints;
   const double least = found.front().evidence - log_odds_of(1.0 - whole.options().significance);
   const KnownBefore known = known_of(sampled, all.loops.size());
   for (const auto& peak : found) {
@@ -77,7 +73,7 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole, bool soon) {
 template <class Pose>
 void climb_from_the_best(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
   const Explanation<Pose> best = *std::ranges::max_element(found, {}, &Explanation<Pose>::evidence);
-  const bool few = accepted_by(best) < kLeastSample;
+  const bool few = best.accepted_count() < kLeastSample;
   Climb<Pose> afresh = climb.on(climb.objective());
   climb_from_each_start(true, [&](const CovarianceScale& scale) {
     found.push_back(climb.from(best, scale));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
@@ -39,6 +40,10 @@ struct Explanation {
   typename Estimate<Pose>::Layout layout;
   std::vector<Standing> standings;  ///< of each loop, given all others
   double evidence = 0.0;            ///< Objective::evidence()
+
+  std::size_t accepted_count() const {
+    return static_cast<std::size_t>(std::ranges::count(accepted, true));
+  }
 
   /// What is expected of how accurate the next loop is.
   ScaleMixture mixture() const {
