@@ -58,15 +58,6 @@ Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
   return climb();
 }
 
-template <class Pose>
-Explanation<Pose> Climb<Pose>::from(const Explanation<Pose>& known, const CovarianceScale& scale) {
-  now_ = unlearnt<Pose>(known.accepted, scale);
-  assessment_.start_over();
-  assessment_.stand_on(known.layout);
-  begin();
-  return climb();
-}
-
 // Learns no scales before it has accepted what they say.
 template <class Pose>
 Explanation<Pose> Climb<Pose>::from(Standpoint<Pose> standpoint) {
@@ -231,8 +222,6 @@ void Climb<Pose>::begin() {
   dropped_.assign(now_.accepted.size(), false);
   learnt_from_ = drawn_from_ = 0;
   failed_ = {};
-  longest_ = std::max(longest_, passed_.size() - began_);
-  began_ = passed_.size();
   assessment_.assess(now_);
   predict_runs();
   best_ = now_;
@@ -255,17 +244,10 @@ const Explanation<Pose>* Climb<Pose>::grow() {
     const double enough = std::max(summit() - best_.evidence, 0.0) / kPatience;
     const bool grows = 2 * now_.accepted_count() >= 3 * had;
     vain = grows || best_.evidence - before > enough ? 0 : vain + 1;
-    if (vain == kPatience || has_fallen_behind()) return nullptr;
+    if (vain == kPatience) return nullptr;
   }
   settled_ = false;
   return nullptr;
-}
-
-// Below the highest peak after more than the longest climb to any.
-template <class Pose>
-bool Climb<Pose>::has_fallen_behind() const {
-  const std::size_t enough = std::max<std::size_t>(longest_, kPatience);
-  return best_.evidence < summit() && passed_.size() - began_ > enough;
 }
 
 // False where no move is left.
