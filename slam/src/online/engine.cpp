@@ -279,13 +279,12 @@ void OnlineEngine<Pose>::take_over(const PruneResult& result) {
   }
 }
 
-// Whether later loops may be judged by a loop: what is beyond what the map tells of its own errors is
-// not, however many others say the same, as the map is wrong then, and others hang on that.
+// Whether later loops may be judged by a loop: what is beyond what the map tells of its own errors
+// is not, however many others say the same, as the map is wrong then, and others hang on that.
 template <class Pose>
 bool OnlineEngine<Pose>::may_follow(Index edge) const {
   const double within = chi_squared_quantile(1.0 - options_.consensus.significance, Pose::kDof);
-  return rows_[edge].now->verdict == spectral::Verdict::keep &&
-         standings_.at(edge).chi2 <= within;
+  return rows_[edge].now->verdict == spectral::Verdict::keep && standings_.at(edge).chi2 <= within;
 }
 
 // A loop that came after the snapshot, by that and the others that came.

@@ -14,13 +14,6 @@
 namespace isotherm::slam::detail {
 namespace {
 
-bool is_part(const std::vector<bool>& part, const std::vector<bool>& whole) {
-  for (std::size_t k = 0; k < part.size(); ++k) {
-    if (part[k] && !whole[k]) return false;
-  }
-  return true;
-}
-
 // All loops as accurate as most.
 template <class Pose>
 Explanation<Pose> unlearnt(std::vector<bool> accepted, const CovarianceScale& scale) {
@@ -154,24 +147,15 @@ std::vector<double> Climb<Pose>::first_gains(const std::vector<CovarianceScale>&
   return gains;
 }
 
-// That of an earlier climb which passed here, which explains the same loops better, or which holds
-// all loops of this one and explains them better, by its scales and map too where those were
-// `learnt` from them; but not where this climb can learn better ones.
+// That of an earlier climb which passed here, or which explains the same loops better than any
+// scales that this climb can learn.
 template <class Pose>
-const Explanation<Pose>* Climb<Pose>::peak_ahead(bool learnt) {
+const Explanation<Pose>* Climb<Pose>::peak_ahead() {
   for (const Passed& passed : passed_) {
     if (passed.peak != peaks_.size() && is_here(passed)) return &peaks_[passed.peak];
   }
   for (const auto& peak : peaks_) {
-    if (now_.accepted == peak.accepted) {
-      if (!outdoes(peak.evidence)) return &peak;
-    } else if (learnt && is_part(now_.accepted, peak.accepted)) {
-      const Place here = place();
-      if (!try_with(scales_of(peak), -kBetter, &peak.layout)) continue;
-      const double there = now_.evidence;
-      go_back(here);
-      if (!outdoes(there)) return &peak;
-    }
+    if (now_.accepted == peak.accepted && !outdoes(peak.evidence)) return &peak;
   }
   return nullptr;
 }
@@ -239,7 +223,7 @@ const Explanation<Pose>* Climb<Pose>::grow() {
     if (!settled && had >= kMoreTelling * drawn_from_) draw_anew();
     const bool learnt =
         had >= kMoreTelling * learnt_from_ && learn_more_than(gain_of_dropping(misfits()));
-    if (const auto* known = had > 0 ? peak_ahead(learnt) : nullptr) return known;
+    if (const auto* known = had > 0 ? peak_ahead() : nullptr) return known;
     if (!learnt && !move()) return nullptr;
     const double enough = std::max(summit() - best_.evidence, 0.0) / kPatience;
     const bool grows = 2 * now_.accepted_count() >= 3 * had;
@@ -322,7 +306,8 @@ bool Climb<Pose>::weigh_anew() {
 template <class Pose>
 bool Climb<Pose>::accept_many_more(double gain) {
   return once(Trial::many_more, [&] {
-    const Group more = likeliest_together(groups(open()), now_.accepted_count(), now_.accepted.size());
+    const Group more =
+        likeliest_together(groups(open()), now_.accepted_count(), now_.accepted.size());
     return more.gain > std::max(gain, kBetter) && try_all_as(more.loops, true);
   });
 }

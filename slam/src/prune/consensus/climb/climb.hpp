@@ -105,7 +105,7 @@ class Climb {
   void stand_on(Standpoint<Pose> standpoint);
   void begin();
   Explanation<Pose> climb();
-  const Explanation<Pose>* peak_ahead(bool learnt);
+  const Explanation<Pose>* peak_ahead();
   const Explanation<Pose>& lead_to(const Explanation<Pose>& peak);
   bool is_here(const Passed& passed) const;
   bool outdoes(double evidence);
