@@ -129,7 +129,8 @@ LoopGain loop_gain(const Belief<Pose>& others, const OwnError<Pose>& own,
     density[j] = mixture.log_share[j] + log_density(learnt, scales, odometry);
   }
   if (mixture.has(kAsStated)) {
-    density[kAsStated] = mixture.log_share[kAsStated] + log_density_as_stated(others, own, odometry);
+    density[kAsStated] =
+        mixture.log_share[kAsStated] + log_density_as_stated(others, own, odometry);
   }
   LoopGain gain;
   gain.log_density = log_sum_of(Nodes::Map(density.data(), kScaleCount));
