@@ -185,7 +185,11 @@ typename Outlook<Pose>::Told Outlook<Pose>::told(Index edge) const {
   const bool turned = known.from != 0;
   const Matrix stated = covariance_from_information<Pose::kDof>(known.information);
   const typename Pose::Tangent root = map_.best().shapes.loops.cwiseSqrt();
-  return {turned ? to : from, turned ? from : to, known.T_from_to, known.information, stated,
+  return {turned ? to : from,
+          turned ? from : to,
+          known.T_from_to,
+          known.information,
+          stated,
           root.asDiagonal() * stated * root.asDiagonal()};
 }
 

@@ -25,8 +25,8 @@ class Outlook {
   /// it would be as likely false as true if the map were known.
   double chi2_at_even_odds(Index edge) const;
 
-  /// Takes an edge that has come since for true: from here on its later vertex is known by it, where
-  /// that is known better so than along odometry.
+  /// Takes an edge that has come since for true: from here on its later vertex is known by it,
+  /// where that is known better so than along odometry.
   void follow(Index edge);
 
   /// The log odds of any loop being true.
