@@ -17,7 +17,7 @@ namespace {
 constexpr double kGrown = 1.1;
 
 // Work of a batch on so few loops that a sample of them is none, in times of that of its climbs
-// from every start: it goes on from where these ended (measured: 2.7 to 3.2). On more a search by a
+// from every start: it goes on from where these ended (measured: 3.2 to 3.8). On more a search by a
 // sample takes about as long as the batch will on the many that it has then.
 constexpr double kToTheLast = 3.0;
 

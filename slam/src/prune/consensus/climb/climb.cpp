@@ -14,6 +14,13 @@
 namespace isotherm::slam::detail {
 namespace {
 
+bool is_part(const std::vector<bool>& part, const std::vector<bool>& whole) {
+  for (std::size_t k = 0; k < part.size(); ++k) {
+    if (part[k] && !whole[k]) return false;
+  }
+  return true;
+}
+
 // All loops as accurate as most.
 template <class Pose>
 Explanation<Pose> unlearnt(std::vector<bool> accepted, const CovarianceScale& scale) {
@@ -48,6 +55,15 @@ Climb<Pose>::Climb(const Objective<Pose>& objective, ConsensusOptions options, R
 template <class Pose>
 Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
   start(none_at(scale));
+  return climb();
+}
+
+template <class Pose>
+Explanation<Pose> Climb<Pose>::from(const Explanation<Pose>& known, const CovarianceScale& scale) {
+  now_ = unlearnt<Pose>(known.accepted, scale);
+  assessment_.start_over();
+  assessment_.stand_on(known.layout);
+  begin();
   return climb();
 }
 
@@ -147,15 +163,24 @@ std::vector<double> Climb<Pose>::first_gains(const std::vector<CovarianceScale>&
   return gains;
 }
 
-// That of an earlier climb which passed here, or which explains the same loops better than any
-// scales that this climb can learn.
+// That of an earlier climb which passed here, which explains the same loops better, or which holds
+// all loops of this one and explains them better, by its scales and map too where those were
+// `learnt` from them; but not where this climb can learn better ones.
 template <class Pose>
-const Explanation<Pose>* Climb<Pose>::peak_ahead() {
+const Explanation<Pose>* Climb<Pose>::peak_ahead(bool learnt) {
   for (const Passed& passed : passed_) {
     if (passed.peak != peaks_.size() && is_here(passed)) return &peaks_[passed.peak];
   }
   for (const auto& peak : peaks_) {
-    if (now_.accepted == peak.accepted && !outdoes(peak.evidence)) return &peak;
+    if (now_.accepted == peak.accepted) {
+      if (!outdoes(peak.evidence)) return &peak;
+    } else if (learnt && is_part(now_.accepted, peak.accepted)) {
+      const Place here = place();
+      if (!try_with(scales_of(peak), -kBetter, &peak.layout)) continue;
+      const double there = now_.evidence;
+      go_back(here);
+      if (!outdoes(there)) return &peak;
+    }
   }
   return nullptr;
 }
@@ -206,6 +231,8 @@ void Climb<Pose>::begin() {
   dropped_.assign(now_.accepted.size(), false);
   learnt_from_ = drawn_from_ = 0;
   failed_ = {};
+  longest_ = std::max(longest_, passed_.size() - began_);
+  began_ = passed_.size();
   assessment_.assess(now_);
   predict_runs();
   best_ = now_;
@@ -223,15 +250,22 @@ const Explanation<Pose>* Climb<Pose>::grow() {
     if (!settled && had >= kMoreTelling * drawn_from_) draw_anew();
     const bool learnt =
         had >= kMoreTelling * learnt_from_ && learn_more_than(gain_of_dropping(misfits()));
-    if (const auto* known = had > 0 ? peak_ahead() : nullptr) return known;
+    if (const auto* known = had > 0 ? peak_ahead(learnt) : nullptr) return known;
     if (!learnt && !move()) return nullptr;
     const double enough = std::max(summit() - best_.evidence, 0.0) / kPatience;
     const bool grows = 2 * now_.accepted_count() >= 3 * had;
     vain = grows || best_.evidence - before > enough ? 0 : vain + 1;
-    if (vain == kPatience) return nullptr;
+    if (vain == kPatience || has_fallen_behind()) return nullptr;
   }
   settled_ = false;
   return nullptr;
+}
+
+// Below the highest peak after more than the longest climb to any.
+template <class Pose>
+bool Climb<Pose>::has_fallen_behind() const {
+  const std::size_t enough = std::max<std::size_t>(longest_, kPatience);
+  return best_.evidence < summit() && passed_.size() - began_ > enough;
 }
 
 // False where no move is left.

@@ -41,6 +41,9 @@ class Climb {
   /// The same from there.
   Explanation<Pose> from(Standpoint<Pose> standpoint);
 
+  /// The same from the loops and the map of `known`, with `scale` as the factors.
+  Explanation<Pose> from(const Explanation<Pose>& known, const CovarianceScale& scale);
+
   /// Goes on from there: loops are accepted and dropped and scales learnt while that helps, without
   /// looking for other scales. Later climbs know the peak.
   Explanation<Pose> resume(Standpoint<Pose> standpoint);
@@ -105,12 +108,13 @@ class Climb {
   void stand_on(Standpoint<Pose> standpoint);
   void begin();
   Explanation<Pose> climb();
-  const Explanation<Pose>* peak_ahead();
+  const Explanation<Pose>* peak_ahead(bool learnt);
   const Explanation<Pose>& lead_to(const Explanation<Pose>& peak);
   bool is_here(const Passed& passed) const;
   bool outdoes(double evidence);
   double summit() const;
   const Explanation<Pose>* grow();
+  bool has_fallen_behind() const;
   bool move();
   bool shift();
   bool assess(double least = -std::numeric_limits<double>::infinity());
@@ -151,6 +155,8 @@ class Climb {
   std::vector<double> run_density_;       // log p(z | the loop before in its run)
   std::vector<Explanation<Pose>> peaks_;  // of earlier climbs
   std::vector<Passed> passed_;
+  std::size_t began_ = 0;              // of those passed, this climb
+  std::size_t longest_ = 0;            // of earlier climbs
   std::vector<bool> dropped_;          // since the climb last rose; not tried again
   std::size_t learnt_from_ = 0;        // loops, at the last lesson
   std::size_t drawn_from_ = 0;         // loops, when the map was last drawn anew
