@@ -283,8 +283,9 @@ void OnlineEngine<Pose>::take_over(const PruneResult& result) {
 // is not, however many others say the same, as the map is wrong then, and others hang on that.
 template <class Pose>
 bool OnlineEngine<Pose>::may_follow(Index edge) const {
-  const double within = chi_squared_quantile(1.0 - options_.consensus.significance, Pose::kDof);
-  return rows_[edge].now->verdict == spectral::Verdict::keep && standings_.at(edge).chi2 <= within;
+  if (rows_[edge].now->verdict != spectral::Verdict::keep) return false;
+  return standings_.at(edge).chi2 <=
+         chi_squared_quantile(1.0 - options_.consensus.significance, Pose::kDof);
 }
 
 // A loop that came after the snapshot, by that and the others that came.

@@ -251,15 +251,14 @@ TYPED_TEST(OnlineConsensusOf, JudgesByLoopsThatWereKeptSince) {
       return online.add_loop(ids[from], ids[to], T_from_to, information).front().verdict;
     };
     const auto& edges = made.graph.constraints;
-    const auto ends_by = [&edges](Index k, Index last) {
-      return std::max(edges[k].from, edges[k].to) <= last;
-    };
+    const auto on_map = [&](Index k) { return std::max(edges[k].from, edges[k].to) <= left; };
     const auto roles = edge_roles(made.graph);
     Index step = 0;
-    for (; ends_by(roles.odometry[step], left); ++step)
+    for (; on_map(roles.odometry[step]); ++step) {
       add(online, made.graph, edges[roles.odometry[step]]);
+    }
     for (const Index k : roles.candidates) {
-      if (ends_by(k, left)) add(online, made.graph, edges[k]);
+      if (on_map(k)) add(online, made.graph, edges[k]);
     }
     online.catch_up();
     for (Index k = left; k <= back; ++k) {
