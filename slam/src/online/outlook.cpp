@@ -200,16 +200,16 @@ double Outlook<Pose>::log_alternative(Index edge) const {
     return map_.assessment().log_alternative(static_cast<Index>(*loop));
   }
   const auto& own = log_.edges()[edge];
-  if (is_copied(edge)) {
-    const Matrix Sigma = map_.best().scale.loops * told(edge).learnt;
-    return log_copy_density<Pose>(log_determinant(Eigen::LLT<Matrix>(Sigma)));
-  }
   const Place nowhere{.chain = -1};
   const Place a = place(own.from).value_or(nowhere);
   const Place b = place(own.to).value_or(nowhere);
   const Index apart = std::abs((a.position + a.steps) - (b.position + b.steps));
   const std::size_t group = a.chain == b.chain ? span_class(apart) : kSpanClasses;
-  return map_.assessment().findings().near[group];
+  const double by_chance = map_.assessment().findings().near[group];
+  if (!is_copied(edge)) return by_chance;
+  const Matrix Sigma = map_.best().scale.loops * told(edge).learnt;
+  const double log_sigma = log_determinant(Eigen::LLT<Matrix>(Sigma));
+  return std::max(by_chance, log_copy_density<Pose>(log_sigma));
 }
 
 // Its place among the loops of the snapshot, if that judged it.

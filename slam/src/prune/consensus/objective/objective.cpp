@@ -60,8 +60,10 @@ Objective<Pose> Objective<Pose>::of(const std::vector<Index>& loops) const {
 template <class Pose>
 double Objective<Pose>::log_alternative(Index loop, const NearByClass& near,
                                         double loop_scale) const {
-  if (!runs_.copied(loop)) return near[proposal_class(stated_.reduced, loop)];
-  return log_copy_density<Pose>(log_sigma_[loop] + Pose::kDof * std::log(loop_scale));
+  const double by_chance = near[proposal_class(stated_.reduced, loop)];
+  if (!runs_.copied(loop)) return by_chance;
+  const double log_sigma = log_sigma_[loop] + Pose::kDof * std::log(loop_scale);
+  return std::max(by_chance, log_copy_density<Pose>(log_sigma));
 }
 
 template <class Pose>

@@ -109,7 +109,8 @@ class Objective {
 
   /// The density that a loop's is held against: that of loops near by chance; for one that
   /// copies the measurement of the one before it in its run, that of a copy, so that a group
-  /// of copies counts as one draw.
+  /// of copies counts as one draw, but no less: where loops are taken for so inaccurate that any
+  /// copy fits, each is as likely a draw of its own.
   double log_alternative(Index loop, const NearByClass& near, double loop_scale) const;
 
   /// What NearDensity::log_nearer() says of a loop that the map leaves the residual r; of a copy
