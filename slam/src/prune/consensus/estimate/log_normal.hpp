@@ -14,11 +14,16 @@ double log_determinant(const Eigen::LLT<Matrix>& factor) {
   return 2.0 * factor.matrixLLT().diagonal().array().log().sum();
 }
 
-/// log N(r; 0, S).
+/// log N(r; 0, S), by the factor of S.
+template <class Pose>
+double log_normal(const typename Pose::Tangent& r,
+                  const Eigen::LLT<typename Pose::Matrix>& factor) {
+  return -0.5 * (r.dot(factor.solve(r)) + log_determinant(factor) + Pose::kDof * kLog2Pi);
+}
+
 template <class Pose>
 double log_normal(const typename Pose::Tangent& r, const typename Pose::Matrix& S) {
-  const Eigen::LLT<typename Pose::Matrix> factor(S);
-  return -0.5 * (r.dot(factor.solve(r)) + log_determinant(factor) + Pose::kDof * kLog2Pi);
+  return log_normal<Pose>(r, Eigen::LLT<typename Pose::Matrix>(S));
 }
 
 /// log of the density that a copied measurement is held against: a normal one's, of this

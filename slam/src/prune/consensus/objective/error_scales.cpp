@@ -62,7 +62,10 @@ ScaleMixture expected_mixture(double scale, const ScaleShares& shares, double sh
   ByScale expected = kPriorLoops;
   for (std::size_t j = 0; j < kScaleCount; ++j) expected[j] += shares.loops[j];
   const double all = sum_of(expected);
-  for (std::size_t j = 0; j < kScaleCount; ++j) mixture.log_share[j] = std::log(expected[j] / all);
+  for (std::size_t j = 0; j < kScaleCount; ++j) {
+    mixture.log_relative[j] = std::log(mixture.relative[j]);
+    mixture.log_share[j] = std::log(expected[j] / all);
+  }
   if (scale * sharpest * kWorst >= 1.0) {
     mixture.log_share[2] = std::log((expected[2] + expected[3]) / all);
     mixture.log_share[3] = kNever;
@@ -92,7 +95,7 @@ ErrorScale error_scale(const ScaleMixture& mixture, const Misfit& misfit) {
   ByScale log_density;
   for (std::size_t j = 0; j < kScaleCount; ++j) {
     const bool stated = j == kAsStated;
-    log_determinant[j] = stated ? misfit.log_stated : misfit.dof * std::log(mixture.relative[j]);
+    log_determinant[j] = stated ? misfit.log_stated : misfit.dof * mixture.log_relative[j];
     const double chi2 = stated ? misfit.stated : misfit.chi2 / mixture.relative[j];
     log_density[j] = mixture.log_share[j] - 0.5 * (log_determinant[j] + chi2);
   }

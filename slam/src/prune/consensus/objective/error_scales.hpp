@@ -62,6 +62,7 @@ ScaleShift all_as_worst(const ScaleShares& shares);
 struct ScaleMixture {
   double scale = 1.0;  ///< on the stated covariance, of most
   ByScale relative{};  ///< variances against those of most, ascending; as stated: in the mean
+  ByScale log_relative{};
   ByScale log_share{};
 
   /// Whether any can be of this scale.

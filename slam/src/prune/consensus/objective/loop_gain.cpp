@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -69,13 +70,38 @@ double log_density(const Prediction<Pose>& prediction, const Factors& own,
   return log_sum_of(by_odometry) - 0.5 * (log_sigma + Pose::kDof * kLog2Pi);
 }
 
-// Where there is nothing to integrate over no axes are needed.
+/// The density of a loop that errs by some factor times Sigma. Axes are found once, and only where
+/// there is something to integrate over, or rounding leaves the others a negative variance.
 template <class Pose>
-double log_density_as_stated(const Belief<Pose>& others, const OwnError<Pose>& own,
-                             const Factors& odometry) {
-  if (odometry.value.size() == 1) return log_normal<Pose>(others.r, others.P + own.stated);
-  return log_density(predict<Pose>(others, own.stated), factors(0.0), odometry);
-}
+class Density {
+ public:
+  Density(const Belief<Pose>& others, const typename Pose::Matrix& Sigma, const Factors& odometry)
+      : others_(others), Sigma_(Sigma), odometry_(odometry) {}
+
+  double log_at(const Factors& own) {
+    if (!axes_ && own.value.size() == 1 && odometry_.value.size() == 1) {
+      const auto factor = variance(own.value[0]);
+      if (factor.info() == Eigen::Success) return log_normal<Pose>(others_.r, factor);
+    }
+    if (!axes_) axes_ = predict<Pose>(others_, Sigma_);
+    return log_density(*axes_, own, odometry_);
+  }
+
+  double chi2(double own) const {
+    if (!axes_) return others_.r.dot(variance(own).solve(others_.r));
+    return (axes_->r.array().square() / (axes_->variance.array() + own)).sum();
+  }
+
+ private:
+  Eigen::LLT<typename Pose::Matrix> variance(double own) const {
+    return Eigen::LLT<typename Pose::Matrix>(others_.P + own * Sigma_);
+  }
+
+  const Belief<Pose>& others_;
+  const typename Pose::Matrix& Sigma_;
+  const Factors& odometry_;
+  std::optional<Prediction<Pose>> axes_;
+};
 
 }  // namespace
 
@@ -90,14 +116,23 @@ Prediction<Pose> predict(const Belief<Pose>& others, const typename Pose::Matrix
           axes.eigenvalues().cwiseMax(0.0), log_determinant(root)};
 }
 
-// With Omega = L L', along the axes of L' P L: where all leave the variance v, the others leave
-// v / (1 - v), and the residual against them is as many times as long.
+// With Omega = L L' and M = I - L' P L the others leave P + P L M^-1 L' P, and the residual
+// against them is r + P L M^-1 L' r (Woodbury). Where nearly nothing is redundant, along the axes
+// of L' P L: where all leave the variance v, the others leave v / (1 - v), and the residual is as
+// many times as long. No eigenvalue of M is more than 1, and so none less than its determinant.
 template <class Pose>
 Belief<Pose> without(const Belief<Pose>& with, const typename Pose::Matrix& Omega) {
   using Matrix = typename Pose::Matrix;
   const Eigen::LLT<Matrix> root(Omega);
   const Matrix L = root.matrixL();
-  const Eigen::SelfAdjointEigenSolver<Matrix> axes(L.transpose() * with.P * L);
+  const Matrix fitted = L.transpose() * with.P * L;
+  const Eigen::LLT<Matrix> rest(Matrix::Identity() - fitted);
+  if (rest.info() == Eigen::Success && log_determinant(rest) > std::log(kLeastShare)) {
+    const Matrix half = rest.matrixL().solve(L.transpose() * with.P);
+    const typename Pose::Tangent own = rest.matrixL().solve(L.transpose() * with.r);
+    return {with.r + half.transpose() * own, with.P + half.transpose() * half};
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix> axes(fitted);
   const Matrix to_axes = axes.eigenvectors().transpose() * L.transpose();
   const typename Pose::Tangent v = axes.eigenvalues().cwiseMax(0.0);
   const typename Pose::Tangent redundancy = (1.0 - v.array()).max(kLeastShare);
@@ -119,22 +154,22 @@ LoopGain loop_gain(const Belief<Pose>& others, const OwnError<Pose>& own,
                    const ScaleMixture& mixture, const CovarianceScale& deviation) {
   const Factors odometry = factors(deviation.odometry);
   const Factors learnt_scale = factors(deviation.loops);
-  const auto learnt = predict<Pose>(others, own.learnt);
+  Density<Pose> learnt(others, own.learnt, odometry);
   ByScale density;
   density.fill(kNever);
   for (std::size_t j = 0; j < kAsStated; ++j) {
     if (!mixture.has(j)) continue;
     const Factors scales{mixture.scale * mixture.relative[j] * learnt_scale.value,
                          learnt_scale.log_weight};
-    density[j] = mixture.log_share[j] + log_density(learnt, scales, odometry);
+    density[j] = mixture.log_share[j] + learnt.log_at(scales);
   }
   if (mixture.has(kAsStated)) {
-    density[kAsStated] =
-        mixture.log_share[kAsStated] + log_density_as_stated(others, own, odometry);
+    Density<Pose> stated(others, own.stated, odometry);
+    density[kAsStated] = mixture.log_share[kAsStated] + stated.log_at(factors(0.0));
   }
   LoopGain gain;
   gain.log_density = log_sum_of(Nodes::Map(density.data(), kScaleCount));
-  gain.chi2 = (learnt.r.array().square() / (learnt.variance.array() + mixture.scale)).sum();
+  gain.chi2 = learnt.chi2(mixture.scale);
   gain.weight = error_scale(mixture, density).weight;
   return gain;
 }
