@@ -90,19 +90,5 @@ TYPED_TEST(LessonOf, OdometryErrsNoMoreThanItsStepsVary) {
   }
 }
 
-// As measured, with the map and odometry where they go then.
-TYPED_TEST(LessonOf, WiderLoopsGainNoMoreThanTheBound) {
-  using Pose = TypeParam;
-  constexpr double kFactor = 9.0;
-  for (const double odometry : {0.01, 1.0, 100.0}) {
-    Assessment<Pose> assessment(this->objective_);
-    const ScaleShares most{{60.0, 0.0, 0.0, 0.0}};
-    const auto now = this->assess(assessment, {odometry, 1.0}, most);
-    const double bound = most_gain_of_wider(kFactor, assessment, now);
-    const auto wider = this->assess(assessment, {odometry, kFactor}, most);
-    EXPECT_LT(wider.evidence - now.evidence, bound + 1.0) << odometry;
-  }
-}
-
 }  // namespace
 }  // namespace isotherm::slam::detail

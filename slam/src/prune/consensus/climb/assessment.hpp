@@ -29,6 +29,9 @@ class Assessment {
   /// the map together.
   void hold_nearness(bool held) { nearness_held_ = held; }
 
+  /// Where the map may become another though the same loops are accepted.
+  void forget_nearness() { found_.near_of.reset(); }
+
   /// How often that was found so far, of how many assessments, and the work of each time, as pace
   /// is told, which is the same on every graph.
   struct NearnessFound {

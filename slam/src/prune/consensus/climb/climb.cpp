@@ -21,16 +21,6 @@ bool is_part(const std::vector<bool>& part, const std::vector<bool>& whole) {
   return true;
 }
 
-// All loops as accurate as most.
-template <class Pose>
-Explanation<Pose> unlearnt(std::vector<bool> accepted, const CovarianceScale& scale) {
-  const std::size_t loops = accepted.size();
-  Explanation<Pose> explanation{.accepted = std::move(accepted), .scale = scale};
-  explanation.shares.loops[0] = static_cast<double>(loops);
-  explanation.weights.resize(loops);
-  return explanation;
-}
-
 // Takes the scales of a lesson or of another explanation.
 template <class Found>
 auto scales_of(const Found& found) {
@@ -58,20 +48,13 @@ Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
   return climb();
 }
 
-template <class Pose>
-Explanation<Pose> Climb<Pose>::from(const Explanation<Pose>& known, const CovarianceScale& scale) {
-  now_ = unlearnt<Pose>(known.accepted, scale);
-  assessment_.start_over();
-  assessment_.stand_on(known.layout);
-  begin();
-  return climb();
-}
-
-// Learns no scales before it has accepted what they say.
+// Learns no scales before it has accepted what they say, and no others afar: these were sought
+// there.
 template <class Pose>
 Explanation<Pose> Climb<Pose>::from(Standpoint<Pose> standpoint) {
   stand_on(std::move(standpoint));
   learnt_from_ = now_.accepted_count();
+  looks_afar_ = false;
   return climb();
 }
 
@@ -176,7 +159,7 @@ const Explanation<Pose>* Climb<Pose>::peak_ahead(bool learnt) {
       if (!outdoes(peak.evidence)) return &peak;
     } else if (learnt && is_part(now_.accepted, peak.accepted)) {
       const Place here = place();
-      if (!try_with(scales_of(peak), -kBetter, &peak.layout)) continue;
+      if (!try_with(scales_of(peak), {.gain = -kBetter, .from = &peak.layout})) continue;
       const double there = now_.evidence;
       go_back(here);
       if (!outdoes(there)) return &peak;
@@ -192,10 +175,14 @@ bool Climb<Pose>::is_here(const Passed& passed) const {
          about_the_same(now_.scale, passed.scale);
 }
 
-// Whether the scales that can be learnt from here explain the same loops better.
+// Whether the scales that can be learnt from here explain the same loops better. Each lesson gains
+// less than the one before: it ends where one more like the last would not lead there.
 template <class Pose>
 bool Climb<Pose>::outdoes(double evidence) {
-  while (now_.evidence <= evidence && learn_more_than(0.0)) {
+  double before = -std::numeric_limits<double>::infinity();
+  while (now_.evidence <= evidence && 2.0 * now_.evidence - before > evidence) {
+    before = now_.evidence;
+    if (!learn_more_than(0.0)) break;
   }
   return now_.evidence > evidence;
 }
@@ -209,7 +196,11 @@ double Climb<Pose>::summit() const {
 
 template <class Pose>
 Explanation<Pose> Climb<Pose>::none_at(const CovarianceScale& scale) const {
-  return unlearnt<Pose>(std::vector<bool>(objective_.stated().reduced.loops.size()), scale);
+  const std::size_t loops = objective_.stated().reduced.loops.size();
+  Explanation<Pose> none{.accepted = std::vector<bool>(loops), .scale = scale};
+  none.shares.loops[0] = static_cast<double>(loops);
+  none.weights.resize(loops);
+  return none;
 }
 
 template <class Pose>
@@ -230,6 +221,7 @@ template <class Pose>
 void Climb<Pose>::begin() {
   dropped_.assign(now_.accepted.size(), false);
   learnt_from_ = drawn_from_ = 0;
+  looks_afar_ = true;
   failed_ = {};
   longest_ = std::max(longest_, passed_.size() - began_);
   began_ = passed_.size();
@@ -314,25 +306,25 @@ bool Climb<Pose>::weigh_by_others() {
     differ = differ ||
              are_of_different_scales(mixture.factor(weights[k]), mixture.factor(now_.weights[k]));
   }
-  return differ && try_with([&](auto& now) { now.weights = weights; });
+  return differ && try_with([&](auto& now) { now.weights = weights; }, {});
 }
 
-// Odometry against loops: where the one is taken for exact, the other has all the errors, of which
-// lessons do not find the way back.
+// Lessons hold residuals. Where some loops are taken for exact the map bends to them, and odometry
+// or the other loops have all the errors: what can be learnt of where all loops are taken for as
+// accurate as the worst is to explain them better.
 template <class Pose>
-bool Climb<Pose>::weigh_otherwise() {
+bool Climb<Pose>::look_afar() {
   const double redundancy = now_.redundancy.odometry.sum() + now_.redundancy.loops.sum();
-  if (!options_.calibrate || redundancy < 1.0) return false;  // nothing tells
   const auto [factor, shares] = all_as_worst(now_.shares);
+  if (!options_.calibrate || !looks_afar_ || redundancy < 1.0) return false;  // nothing tells
   const Lesson<Pose> wider{{now_.scale.odometry, now_.scale.loops * factor}, now_.shapes, shares};
-  return std::log(wider.scale.loops) < kMostScale &&
-         most_gain_of_wider(factor, assessment_, now_) > kBetter && try_with(scales_of(wider));
+  return std::log(wider.scale.loops) < kMostScale && try_with(scales_of(wider), {.learning = true});
 }
 
 template <class Pose>
 bool Climb<Pose>::weigh_anew() {
   return once(Trial::weights_by_others, [this] { return weigh_by_others(); }) ||
-         once(Trial::wide_loops, [this] { return weigh_otherwise(); });
+         once(Trial::afar, [this] { return look_afar(); });
 }
 
 // Whether loops of which none gains alone, while few are thought true, gain more than this
@@ -382,7 +374,7 @@ void Climb<Pose>::draw_anew() {
   drawn_from_ = now_.accepted_count();
   try {
     const Layout relaxed = assessment_.relaxed(now_);
-    try_with([](auto&) {}, kBetter, &relaxed);
+    try_with([](auto&) {}, {.from = &relaxed});
   } catch (const NumericalError&) {  // nothing to start from
   }
 }
@@ -470,10 +462,10 @@ void Climb<Pose>::accept(const Selection& loops) {
 // Whether it gains that all of these are `accepted`, or none, or else nothing changes.
 template <class Pose>
 bool Climb<Pose>::try_all_as(const Selection& loops, bool accepted) {
-  const bool better = !loops.empty() && try_with([&](auto& now) {
+  const auto change = [&](auto& now) {
     for (const Index k : loops) now.accepted[k] = accepted;
-  });
-  if (!better) return false;
+  };
+  if (loops.empty() || !try_with(change, {})) return false;
   if (!accepted) {
     for (const Index k : loops) dropped_[k] = true;
   }
@@ -491,23 +483,25 @@ bool Climb<Pose>::learn_more_than(double gain) {
     if (failed_[trial]) continue;
     const Lesson<Pose> found = learn(assessment_, now_, trial == Trial::lesson_of_scales);
     if (found.gain <= least) continue;
-    if (try_with(scales_of(found))) return true;
+    if (try_with(scales_of(found), {})) return true;
     failed_[trial] = true;
     if (found.shapes.is_about(now_.shapes)) failed_[Trial::lesson_of_scales] = true;
   }
   return false;
 }
 
-// Whether that gains as much, with the map sought `from` there, or else nothing changes. Scales at
-// which the normal equations break down explain nothing.
+// Whether that gains as much, or else nothing changes. Scales at which the normal equations break
+// down explain nothing.
 template <class Pose>
-bool Climb<Pose>::try_with(const Change& change, double gain, const Layout* from) {
+bool Climb<Pose>::try_with(const Change& change, const Terms& terms) {
   const Place before = place();
   change(now_);
-  if (from) assessment_.stand_on(*from);
+  if (terms.from) assessment_.stand_on(*terms.from);
+  if (terms.learning) assessment_.forget_nearness();
+  const double least = before.now.evidence + terms.gain;
   bool better = false;
   try {
-    better = assess(before.now.evidence + gain);
+    better = terms.learning ? assess() && outdoes(least) : assess(least);
   } catch (const NumericalError&) {
     better = false;
   }

@@ -41,9 +41,6 @@ class Climb {
   /// The same from there.
   Explanation<Pose> from(Standpoint<Pose> standpoint);
 
-  /// The same from the loops and the map of `known`, with `scale` as the factors.
-  Explanation<Pose> from(const Explanation<Pose>& known, const CovarianceScale& scale);
-
   /// Goes on from there: loops are accepted and dropped and scales learnt while that helps, without
   /// looking for other scales. Later climbs know the peak.
   Explanation<Pose> resume(Standpoint<Pose> standpoint);
@@ -77,7 +74,7 @@ class Climb {
     lesson,
     lesson_of_scales,
     weights_by_others,
-    wide_loops,
+    afar,
     many_more,
     undecided,
     doubtful,
@@ -93,6 +90,13 @@ class Climb {
     typename Assessment<Pose>::Findings found;
     std::vector<double> run_density;
     std::array<bool, trials> failed;
+  };
+
+  // What a trial is to gain, with the map sought from a layout, and by what can be learnt then.
+  struct Terms {
+    double gain = kBetter;
+    const Layout* from = nullptr;
+    bool learning = false;
   };
 
   // Where a climb was, and the number of the peak that it led to; of this one that of the next.
@@ -131,12 +135,12 @@ class Climb {
   bool once(Trial trial, const std::function<bool()>& move);
   bool weigh_anew();
   bool weigh_by_others();
-  bool weigh_otherwise();
+  bool look_afar();
   bool accept_many_more(double gain);
   bool accept_undecided();
   bool drop_undecided();
   void draw_anew();
-  bool try_with(const Change& change, double gain = kBetter, const Layout* from = nullptr);
+  bool try_with(const Change& change, const Terms& terms);
   Place place() const { return {now_, assessment_.findings(), run_density_, failed_}; }
   void go_back(const Place& place);
   void predict_runs();
@@ -161,6 +165,7 @@ class Climb {
   std::size_t learnt_from_ = 0;        // loops, at the last lesson
   std::size_t drawn_from_ = 0;         // loops, when the map was last drawn anew
   std::array<bool, trials> failed_{};  // trials here; not repeated until a change
+  bool looks_afar_ = true;             // for other scales
   std::vector<ConsensusMove> moves_;
   bool settled_ = true;
 };

@@ -270,21 +270,7 @@ Lesson<Pose> learn(const Assessment<Pose>& assessment, const Explanation<Pose>& 
   return best;
 }
 
-template <class Pose>
-double most_gain_of_wider(double factor, const Assessment<Pose>& assessment,
-                          const Explanation<Pose>& explanation) {
-  double cost = assessment.estimate().odometry_cost() / explanation.scale.odometry;
-  double redundancy = 0.0;
-  for (const auto& residual : residuals_of(assessment, explanation)) {
-    cost += residual.weight.learnt * residual.chi2() / explanation.scale.loops;
-    redundancy += residual.telling().sum();
-  }
-  return 0.5 * ((1.0 - 1.0 / factor) * cost - redundancy * std::log(factor));
-}
-
 template Lesson<Pose2> learn(const Assessment<Pose2>&, const Explanation<Pose2>&, bool);
-template double most_gain_of_wider(double, const Assessment<Pose2>&, const Explanation<Pose2>&);
 template Lesson<Pose3> learn(const Assessment<Pose3>&, const Explanation<Pose3>&, bool);
-template double most_gain_of_wider(double, const Assessment<Pose3>&, const Explanation<Pose3>&);
 
 }  // namespace isotherm::slam::detail

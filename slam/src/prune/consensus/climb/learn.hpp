@@ -24,12 +24,4 @@ template <class Pose>
 Lesson<Pose> learn(const Assessment<Pose>& assessment, const Explanation<Pose>& explanation,
                    bool same_shapes);
 
-/// No less than what the evidence can gain where all loops' variances are `factor` (> 1) times as
-/// large, whatever the map and odometry become then, in the linearised problem: the determinant's
-/// log is convex in those of the variances, and the least cost concave in their inverses, and
-/// of a tree of odometry zero where loops say nothing.
-template <class Pose>
-double most_gain_of_wider(double factor, const Assessment<Pose>& assessment,
-                          const Explanation<Pose>& explanation);
-
 }  // namespace isotherm::slam::detail

@@ -67,17 +67,14 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole, bool soon) {
   return standpoints;
 }
 
-// Scales of the loops that were found may have other peaks: sought from each start, all loops
-// known; of few loops, which leave scales uncertain, once more by climbs that no other loops or
-// peaks lead astray.
+// Scales of the loops that were found may have more than one peak: sought from each start, by
+// climbs that no other loops or peaks lead astray.
 template <class Pose>
-void climb_from_the_best(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
+void settle_anew(const Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
   const Explanation<Pose> best = *std::ranges::max_element(found, {}, &Explanation<Pose>::evidence);
-  const bool few = best.accepted_count() < kLeastSample;
   Climb<Pose> afresh = climb.on(climb.objective());
   climb_from_each_start(true, [&](const CovarianceScale& scale) {
-    found.push_back(climb.from(best, scale));
-    if (few) found.push_back(afresh.settled_on(best.accepted, scale));
+    found.push_back(afresh.settled_on(best.accepted, scale));
   });
 }
 
@@ -100,7 +97,7 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   };
   if (astray()) {
     climb_from_each_start(calibrate, try_from);
-    if (calibrate && depth.to_the_last && !astray()) climb_from_the_best(climb, found);
+    if (calibrate && depth.to_the_last && !astray()) settle_anew(climb, found);
   }
   if (calibrate && astray()) {
     for (const auto& start : gaining_starts(climb)) unless_it_breaks_down(try_from, start);
