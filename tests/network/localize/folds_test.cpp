@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -105,6 +106,20 @@ TEST(Folds, AnchorsDoNotTurn) {
   for (const auto& fold : map.folds()) {
     EXPECT_FALSE(std::binary_search(fold.part.begin(), fold.part.end(), 11));
   }
+}
+
+// It stands six deviations off the line of the two others, so that the part's ranges to it break.
+TEST(Folds, AnAnchorBesideTheHingeDoesNotHoldAPart) {
+  const double bend = 0.3;
+  auto network = hinged_network(bend, {});
+  network.landmarks = {7};
+  network.positions.col(7) = hinged_points(bend).col(7);
+  const Map map(network, bend);
+  const auto folds = map.folds();
+  const auto* fold = Map::fold_of(folds, kAbove);
+  ASSERT_NE(fold, nullptr);
+  EXPECT_NEAR(std::abs(fold->normal.y()), 1.0, 1e-9);
+  EXPECT_NEAR(fold->cost, 5.0 * kNoAbsence.cost_of(0.05).anything, 1e-3);
 }
 
 TEST(Folds, NoneInSpaceOrOfNothing) {

@@ -135,20 +135,26 @@ class AxisSearch {
     part_of_[node] = part_number_;
   }
 
-  // From two nodes; false if it comes to an anchor, which does not turn, to a part that was large
-  // or is known, or to too many nodes.
+  // From two nodes; false if it comes to a part that was large or is known, to too many nodes, or
+  // if ties to anchors, which do not turn, cost too much.
   bool grow(std::vector<Index>& part) {
     ++part_number_;
     for (const Index v : part) add(v);
+    double cost = 0.0;
     for (std::size_t k = 0; k < part.size(); ++k) {
-      const double height_of_turned = height(part[k]);
+      const double turned = height(part[k]);
       for (const auto& tie : ties_.of(part[k])) {
-        if (part_of_[tie.vertex] == part_number_ || !breaks(tie, height_of_turned)) continue;
+        if (part_of_[tie.vertex] == part_number_ || !breaks(tie, turned)) continue;
+        if (!can_turn(tie.vertex)) {
+          cost += extra_cost(tie, turned);
+          if (cost > most_cost_) return false;
+          continue;
+        }
         auto& [number, count] = strings_[tie.vertex];
         if (number != part_number_) count = 0;
         number = part_number_;
         if (++count < 2) continue;
-        if (problem_.is_anchor[tie.vertex] || is_known(tie.vertex)) return false;
+        if (is_known(tie.vertex)) return false;
         add(tie.vertex);
         part.push_back(tie.vertex);
         if (static_cast<Index>(part.size()) > most_) return false;
@@ -169,8 +175,7 @@ class AxisSearch {
     double cost = 0.0;
     for (const Index v : part) {
       for (const auto& tie : ties_.of(v)) {
-        if (part_of_[tie.vertex] == part_number_) continue;
-        cost += tie.cost_at(std::sqrt(mirrored(tie, height(v)))) - tie.cost;
+        if (part_of_[tie.vertex] != part_number_) cost += extra_cost(tie, height(v));
       }
     }
     return cost;
@@ -179,6 +184,10 @@ class AxisSearch {
   // Squared distance of the ends of a tie if the one at a height is mirrored, the other not.
   double mirrored(const PairTie& tie, double turned) const {
     return std::max(0.0, tie.squared + 4.0 * turned * height(tie.vertex));
+  }
+
+  double extra_cost(const PairTie& tie, double turned) const {
+    return tie.cost_at(std::sqrt(mirrored(tie, turned))) - tie.cost;
   }
 
   bool breaks(const PairTie& tie, double turned) const {
