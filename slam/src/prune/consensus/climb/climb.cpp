@@ -48,13 +48,11 @@ Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
   return climb();
 }
 
-// Learns no scales before it has accepted what they say, and no others afar: these were sought
-// there.
+// Learns no scales before it has accepted what they say.
 template <class Pose>
 Explanation<Pose> Climb<Pose>::from(Standpoint<Pose> standpoint) {
   stand_on(std::move(standpoint));
   learnt_from_ = now_.accepted_count();
-  looks_afar_ = false;
   return climb();
 }
 
@@ -221,7 +219,6 @@ template <class Pose>
 void Climb<Pose>::begin() {
   dropped_.assign(now_.accepted.size(), false);
   learnt_from_ = drawn_from_ = 0;
-  looks_afar_ = true;
   failed_ = {};
   longest_ = std::max(longest_, passed_.size() - began_);
   began_ = passed_.size();
@@ -313,7 +310,7 @@ bool Climb<Pose>::weigh_by_others() {
 // or the other loops have all the errors: what can be learnt of where all loops are taken for as
 // accurate as the worst is to explain them better.
 template <class Pose>
-bool Climb<Pose>::look_afar() {
+bool Climb<Pose>::weigh_afar() {
   const double redundancy = now_.redundancy.odometry.sum() + now_.redundancy.loops.sum();
   const auto [factor, shares] = all_as_worst(now_.shares);
   if (!options_.calibrate || !looks_afar_ || redundancy < 1.0) return false;  // nothing tells
@@ -324,7 +321,7 @@ bool Climb<Pose>::look_afar() {
 template <class Pose>
 bool Climb<Pose>::weigh_anew() {
   return once(Trial::weights_by_others, [this] { return weigh_by_others(); }) ||
-         once(Trial::afar, [this] { return look_afar(); });
+         once(Trial::afar, [this] { return weigh_afar(); });
 }
 
 // Whether loops of which none gains alone, while few are thought true, gain more than this

@@ -45,6 +45,10 @@ class Climb {
   /// looking for other scales. Later climbs know the peak.
   Explanation<Pose> resume(Standpoint<Pose> standpoint);
 
+  /// Whether climbs seek scales far from those that lessons lead to; on a sample of the loops that
+  /// takes less time.
+  void look_afar(bool looks) { looks_afar_ = looks; }
+
   /// See Assessment.
   void hold_nearness(bool held) { assessment_.hold_nearness(held); }
 
@@ -135,7 +139,7 @@ class Climb {
   bool once(Trial trial, const std::function<bool()>& move);
   bool weigh_anew();
   bool weigh_by_others();
-  bool look_afar();
+  bool weigh_afar();
   bool accept_many_more(double gain);
   bool accept_undecided();
   bool drop_undecided();
@@ -165,7 +169,7 @@ class Climb {
   std::size_t learnt_from_ = 0;        // loops, at the last lesson
   std::size_t drawn_from_ = 0;         // loops, when the map was last drawn anew
   std::array<bool, trials> failed_{};  // trials here; not repeated until a change
-  bool looks_afar_ = true;             // for other scales
+  bool looks_afar_ = true;
   std::vector<ConsensusMove> moves_;
   bool settled_ = true;
 };

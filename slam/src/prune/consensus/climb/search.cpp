@@ -43,14 +43,21 @@ KnownBefore known_of(const std::vector<Index>& sampled, std::size_t all) {
   return known;
 }
 
-// Where the climbs on a sample of the loops ended; none of few loops, or where few are true: these
-// tell nothing of scales.
+// None of few loops.
 template <class Pose>
-std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole, bool soon) {
+std::vector<Index> sample_of(const Climb<Pose>& climb, bool soon) {
+  const auto& all = climb.objective().stated().reduced;
+  const std::size_t every = soon ? sampled_at_most(all.loops.size()) : kBatchGrowth;
+  return sample(all, climb.options().window, every);
+}
+
+// Where the climbs on a sample of the loops ended; none where few are true, which tells nothing of
+// scales.
+template <class Pose>
+std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole,
+                                          const std::vector<Index>& sampled, bool soon) {
   const Objective<Pose>& objective = whole.objective();
   const auto& all = objective.stated().reduced;
-  const std::size_t every = soon ? sampled_at_most(all.loops.size()) : kBatchGrowth;
-  const auto sampled = sample(all, whole.options().window, every);
   std::vector<Standpoint<Pose>> standpoints;
   if (sampled.empty()) return standpoints;
   const Objective<Pose> part = objective.of(sampled);
@@ -85,7 +92,10 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   const bool calibrate = climb.options().calibrate;
   std::vector<Explanation<Pose>> found;
   const auto try_from = [&](const auto& start) { found.push_back(climb.from(start)); };
-  for (const auto& standpoint : standpoints(climb, depth.sample_soon)) {
+  const std::vector<Index> sampled = sample_of(climb, depth.sample_soon);
+  const bool at_once = sampled.empty();
+  climb.look_afar(at_once);
+  for (const auto& standpoint : standpoints(climb, sampled, depth.sample_soon)) {
     unless_it_breaks_down(try_from, standpoint);
   }
   const auto nothing = [&] { return climb.nothing(least_that_tells(found)); };
@@ -97,7 +107,7 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   };
   if (astray()) {
     climb_from_each_start(calibrate, try_from);
-    if (calibrate && depth.to_the_last && !astray()) settle_anew(climb, found);
+    if (calibrate && depth.to_the_last && at_once && !astray()) settle_anew(climb, found);
   }
   if (calibrate && astray()) {
     for (const auto& start : gaining_starts(climb)) unless_it_breaks_down(try_from, start);
