@@ -561,8 +561,9 @@ A ratio far from 1 is mostly of a part that only one of the two estimates has in
 10,000 nodes two networks have such a part, of 33 and 43 nodes at the border, that is taken for firm
 (eight ranges tie the first to the rest, none of which its mirror image contradicts), and one with 10 %
 of noise and a fifth of the ranges too long has 363 nodes far off.
+"""
 
-### Constants
+CONSTANTS = """### Constants
 
 What the localiser decides by is in `network/src/localize/constants.hpp`, 25 constants with their unit and
 where they come from; [what each is worth](localization-ablation.md).
@@ -609,7 +610,7 @@ def main():
             store.get(baselines_key(*cell), lambda: measure_baselines(*cell))
     sections = [simulated_section(store, nodes) for nodes in (100, 1000, 10000)]
     sections.append(exceptions_section(store))
-    PAGE.write_text(INTRODUCTION + "\n".join(filter(None, sections)) + "\n" + REAL
+    PAGE.write_text(INTRODUCTION + "\n".join([*filter(None, sections), CONSTANTS]) + "\n" + REAL
                     + real_section(store) + "\n")
 
 

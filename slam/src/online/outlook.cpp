@@ -208,8 +208,7 @@ double Outlook<Pose>::log_alternative(Index edge) const {
   const double by_chance = map_.assessment().findings().near[group];
   if (!is_copied(edge)) return by_chance;
   const Matrix Sigma = map_.best().scale.loops * told(edge).learnt;
-  const double log_sigma = log_determinant(Eigen::LLT<Matrix>(Sigma));
-  return std::max(by_chance, log_copy_density<Pose>(log_sigma));
+  return log_copy_density<Pose>(log_determinant(Eigen::LLT<Matrix>(Sigma)), by_chance);
 }
 
 // Its place among the loops of the snapshot, if that judged it.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -27,10 +28,11 @@ double log_normal(const typename Pose::Tangent& r, const typename Pose::Matrix& 
 }
 
 /// log of the density that a copied measurement is held against: a normal one's, of this
-/// log |Sigma|, at twice the squared length that is expected of its error.
+/// log |Sigma|, at twice the squared length that is expected of its error; no less than that of a
+/// draw of its own, by chance.
 template <class Pose>
-double log_copy_density(double log_sigma) {
-  return -0.5 * (log_sigma + Pose::kDof * kLog2Pi) - Pose::kDof;
+double log_copy_density(double log_sigma, double log_by_chance) {
+  return std::max(log_by_chance, -0.5 * (log_sigma + Pose::kDof * kLog2Pi) - Pose::kDof);
 }
 
 }  // namespace isotherm::slam::detail

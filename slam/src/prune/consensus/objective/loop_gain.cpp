@@ -165,7 +165,8 @@ LoopGain loop_gain(const Belief<Pose>& others, const OwnError<Pose>& own,
   }
   if (mixture.has(kAsStated)) {
     Density<Pose> stated(others, own.stated, odometry);
-    density[kAsStated] = mixture.log_share[kAsStated] + stated.log_at(factors(0.0));
+    const Factors exact{Nodes::Ones(1), Nodes::Zero(1)};
+    density[kAsStated] = mixture.log_share[kAsStated] + stated.log_at(exact);
   }
   LoopGain gain;
   gain.log_density = log_sum_of(Nodes::Map(density.data(), kScaleCount));

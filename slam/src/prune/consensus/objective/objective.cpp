@@ -63,7 +63,7 @@ double Objective<Pose>::log_alternative(Index loop, const NearByClass& near,
   const double by_chance = near[proposal_class(stated_.reduced, loop)];
   if (!runs_.copied(loop)) return by_chance;
   const double log_sigma = log_sigma_[loop] + Pose::kDof * std::log(loop_scale);
-  return std::max(by_chance, log_copy_density<Pose>(log_sigma));
+  return log_copy_density<Pose>(log_sigma, by_chance);
 }
 
 template <class Pose>
