@@ -110,7 +110,7 @@ Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
   grow();
   now_.accepted = accepted;
   assess();
-  while (learn_more_than(0.0) || weigh_anew()) {
+  while (learn_more_than(0.0, true) || weigh_anew()) {
   }
   return now_;
 }
@@ -219,6 +219,7 @@ template <class Pose>
 void Climb<Pose>::begin() {
   dropped_.assign(now_.accepted.size(), false);
   learnt_from_ = drawn_from_ = 0;
+  stride_ = 1.0;
   failed_ = {};
   longest_ = std::max(longest_, passed_.size() - began_);
   began_ = passed_.size();
@@ -260,7 +261,7 @@ bool Climb<Pose>::has_fallen_behind() const {
 // False where no move is left.
 template <class Pose>
 bool Climb<Pose>::move() {
-  return shift() || learn_more_than(0.0) || weigh_anew() || accept_many_more(0.0) ||
+  return shift() || learn_more_than(0.0, true) || weigh_anew() || accept_many_more(0.0) ||
          once(Trial::undecided, [this] { return accept_undecided(); }) ||
          once(Trial::doubtful, [this] { return drop_undecided(); });
 }
@@ -470,9 +471,10 @@ bool Climb<Pose>::try_all_as(const Selection& loops, bool accepted) {
   return true;
 }
 
-// Whether there was anything to learn that gains more than this.
+// Whether there was anything to learn that gains more than this; `at_last`: where no loop is to be
+// accepted or dropped.
 template <class Pose>
-bool Climb<Pose>::learn_more_than(double gain) {
+bool Climb<Pose>::learn_more_than(double gain, bool at_last) {
   if (!options_.calibrate) return false;
   learnt_from_ = std::max<std::size_t>(now_.accepted_count(), 1);
   const double least = std::max(gain, kBetter);
@@ -480,11 +482,31 @@ bool Climb<Pose>::learn_more_than(double gain) {
     if (failed_[trial]) continue;
     const Lesson<Pose> found = learn(assessment_, now_, trial == Trial::lesson_of_scales);
     if (found.gain <= least) continue;
-    if (try_with(scales_of(found), {})) return true;
+    if (take(found, at_last)) return true;
     failed_[trial] = true;
     if (found.shapes.is_about(now_.shapes)) failed_[Trial::lesson_of_scales] = true;
   }
   return false;
+}
+
+// Whether a lesson gains, or more of it than it says.
+template <class Pose>
+bool Climb<Pose>::take(const Lesson<Pose>& found, bool at_last) {
+  if (at_last && take_farther(found)) return true;
+  if (!try_with(scales_of(found), {})) return false;
+  if (at_last) stride_ *= 2.0;
+  return true;
+}
+
+// Where lessons change little: on a long way loops turn out to be of other scales.
+template <class Pose>
+bool Climb<Pose>::take_farther(const Lesson<Pose>& found) {
+  if (stride_ == 1.0) return false;
+  const Lesson<Pose> far = beyond(found, now_, assessment_.most_odometry(), stride_);
+  const bool gains =
+      about_the_same(far.scale, now_.scale) && try_with(scales_of(far), {.gain = found.gain});
+  stride_ = gains ? 2.0 * stride_ : 1.0;
+  return gains;
 }
 
 // Whether that gains as much, or else nothing changes. Scales at which the normal equations break
@@ -525,6 +547,7 @@ void Climb<Pose>::predict_runs() {
 
 template <class Pose>
 void Climb<Pose>::note(std::size_t accepted, std::size_t dropped) {
+  stride_ = 1.0;
   moves_.push_back({.accepted = static_cast<std::int64_t>(accepted),
                     .dropped = static_cast<std::int64_t>(dropped),
                     .in_force = static_cast<std::int64_t>(now_.accepted_count())});

@@ -28,9 +28,11 @@ void ScaleShares::add(const ErrorScale& found) {
   for (std::size_t j = 0; j < kScaleCount; ++j) loops[j] += found.probability[j];
 }
 
+double ScaleShares::count() const { return sum_of(loops); }
+
 double ScaleShares::log_evidence() const {
   const double before = sum_of(kPriorLoops);
-  double log_probability = std::lgamma(before) - std::lgamma(before + sum_of(loops));
+  double log_probability = std::lgamma(before) - std::lgamma(before + count());
   for (std::size_t j = 0; j < kScaleCount; ++j) {
     log_probability += log_rising(kPriorLoops[j], loops[j]);
   }

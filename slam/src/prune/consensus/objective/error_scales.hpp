@@ -36,6 +36,8 @@ struct ScaleShares {
   /// One more.
   void add(const ErrorScale& found);
 
+  double count() const;
+
   /// log of the probability of finding these, of parts a lower bound.
   double log_evidence() const;
 };
