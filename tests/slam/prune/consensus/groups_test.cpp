@@ -1,52 +1,49 @@
 #include "prune/consensus/climb/groups.hpp"
 
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 
-#include "prune/consensus/objective/log_prior.hpp"
+#include "prune/consensus/constants.hpp"
+#include "prune/consensus/objective/log_odds.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
 
-Group group_of(std::vector<Index> loops, double evidence, std::pair<Index, Index> parts = {0, 0}) {
-  return {.loops = std::move(loops), .evidence = evidence, .parts = parts};
+Group group_of(std::vector<Index> loops, double gain, std::pair<Index, Index> parts = {0, 0}) {
+  return {.loops = std::move(loops), .gain = gain, .parts = parts};
 }
 
-// Of a hundred loops ten are in force, so that one more is false by nine to one. All ninety are
-// true as likely as the ten alone are.
-TEST(LikeliestTogether, AreManyOfWhichNoneGainsAlone) {
+TEST(MostCertain, AreNoMoreThanAreLikelyAllTrue) {
   std::vector<Group> groups;
-  for (Index k = 0; k < 90; ++k) groups.push_back(group_of({k}, 0.1));
-  const Group many = likeliest_together(groups, 10, 100);
-  EXPECT_EQ(many.loops.size(), 90u);
-  EXPECT_NEAR(many.evidence, 9.0, 1e-12);
-  EXPECT_NEAR(many.gain, 9.0 + log_prior(100, 100) - log_prior(10, 100), 1e-12);
-  groups.resize(1);
-  EXPECT_TRUE(likeliest_together(groups, 10, 100).loops.empty());
+  for (Index k = 0; k < 8; ++k) groups.push_back(group_of({k}, 0.5 * (1.0 + k)));
+  double expected_false = 0.0;
+  std::vector<Index> expected;
+  for (Index k = 7; k >= 0; --k) {
+    expected_false += probability_of(-0.5 * (1.0 + k));
+    if (expected_false <= kMostExpectedFalse) expected.push_back(k);
+  }
+  ASSERT_LT(expected.size(), 8u);
+  const Group all = most_certain(groups, 100);
+  EXPECT_EQ(all.loops, expected);
+  EXPECT_TRUE(most_certain({}, 100).loops.empty());
 }
 
-// By trying all subsets of groups of several sizes.
-TEST(LikeliestTogether, AreTheBestOfAllSubsetsOfLoops) {
-  const std::vector<double> evidence = {2.5, -3.0, 1.5, -0.5, -8.0, 0.5};
+TEST(MostCertain, AreNotManyMoreThanThoseInForce) {
   std::vector<Group> groups;
-  for (std::size_t k = 0; k < evidence.size(); ++k) {
-    groups.push_back(group_of({static_cast<Index>(k)}, evidence[k]));
-  }
-  double best = 0.0;
-  for (unsigned subset = 0; subset < 64; ++subset) {
-    double gain = -log_prior(1, 8);
-    std::size_t size = 0;
-    for (std::size_t k = 0; k < 6; ++k) {
-      if ((subset >> k) & 1u) gain += evidence[k], ++size;
-    }
-    best = std::max(best, gain + log_prior(1 + size, 8));
-  }
-  EXPECT_NEAR(likeliest_together(groups, 1, 8).gain, best, 1e-12);
+  for (Index k = 0; k < 100; ++k) groups.push_back(group_of({3 * k, 3 * k + 1, 3 * k + 2}, 50.0));
+  EXPECT_EQ(most_certain(groups, 3).loops.size(), 3 * kBatchGrowth);
+  EXPECT_EQ(most_certain({group_of({0, 1, 2}, 50.0)}, 0).loops.size(), 3u) << "the first at least";
 }
 
-TEST(LikeliestTogether, AreOnlyLoopsThatTheMapPredicts) {
-  const Group one = likeliest_together({group_of({3}, 50.0, {0, 1}), group_of({5}, 40.0)}, 0, 2);
-  EXPECT_EQ(one.loops, std::vector<Index>{5});
-  EXPECT_TRUE(likeliest_together({}, 0, 0).loops.empty());
+// Whatever each says of where a part is, one of them puts it there.
+TEST(MostCertain, JoinPartsOnce) {
+  const Group all = most_certain({group_of({0}, 50.0, {0, 1}), group_of({1}, 60.0, {1, 2}),
+                                  group_of({2}, 40.0, {0, 2}), group_of({3}, 30.0, {2, 2})},
+                                 10);
+  EXPECT_EQ(all.loops, (std::vector<Index>{1, 0, 3}));
+  EXPECT_NEAR(all.gain, 140.0, 1e-12);
 }
 
 }  // namespace

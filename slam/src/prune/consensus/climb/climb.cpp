@@ -261,7 +261,7 @@ bool Climb<Pose>::has_fallen_behind() const {
 // False where no move is left.
 template <class Pose>
 bool Climb<Pose>::move() {
-  return shift() || learn_more_than(0.0, true) || weigh_anew() || accept_many_more(0.0) ||
+  return shift() || learn_more_than(0.0, true) || weigh_anew() ||
          once(Trial::undecided, [this] { return accept_undecided(); }) ||
          once(Trial::doubtful, [this] { return drop_undecided(); });
 }
@@ -275,7 +275,7 @@ bool Climb<Pose>::shift() {
   if (!batch.loops.empty() && batch.gain > dropping) {
     accept(batch.loops);
   } else if (!out.empty()) {
-    if (!learn_more_than(dropping) && !accept_many_more(dropping)) drop(out);
+    if (!learn_more_than(dropping)) drop(out);
   } else {
     return false;
   }
@@ -304,7 +304,7 @@ bool Climb<Pose>::weigh_by_others() {
     differ = differ ||
              are_of_different_scales(mixture.factor(weights[k]), mixture.factor(now_.weights[k]));
   }
-  return differ && try_with([&](auto& now) { now.weights = weights; }, {});
+  return differ && try_with([&](auto& now) { now.weights = weights; });
 }
 
 // Lessons hold residuals. Where some loops are taken for exact the map bends to them, and odometry
@@ -323,17 +323,6 @@ template <class Pose>
 bool Climb<Pose>::weigh_anew() {
   return once(Trial::weights_by_others, [this] { return weigh_by_others(); }) ||
          once(Trial::afar, [this] { return weigh_afar(); });
-}
-
-// Whether loops of which none gains alone, while few are thought true, gain more than this
-// together.
-template <class Pose>
-bool Climb<Pose>::accept_many_more(double gain) {
-  return once(Trial::many_more, [&] {
-    const Group more =
-        likeliest_together(groups(open()), now_.accepted_count(), now_.accepted.size());
-    return more.gain > std::max(gain, kBetter) && try_all_as(more.loops, true);
-  });
 }
 
 // All loops that are not false beyond doubt, by twice the log odds that a verdict takes: where a
@@ -463,7 +452,7 @@ bool Climb<Pose>::try_all_as(const Selection& loops, bool accepted) {
   const auto change = [&](auto& now) {
     for (const Index k : loops) now.accepted[k] = accepted;
   };
-  if (loops.empty() || !try_with(change, {})) return false;
+  if (loops.empty() || !try_with(change)) return false;
   if (!accepted) {
     for (const Index k : loops) dropped_[k] = true;
   }
@@ -493,7 +482,7 @@ bool Climb<Pose>::learn_more_than(double gain, bool at_last) {
 template <class Pose>
 bool Climb<Pose>::take(const Lesson<Pose>& found, bool at_last) {
   if (at_last && take_farther(found)) return true;
-  if (!try_with(scales_of(found), {})) return false;
+  if (!try_with(scales_of(found))) return false;
   if (at_last) stride_ *= 2.0;
   return true;
 }
@@ -502,7 +491,7 @@ bool Climb<Pose>::take(const Lesson<Pose>& found, bool at_last) {
 template <class Pose>
 bool Climb<Pose>::take_farther(const Lesson<Pose>& found) {
   if (stride_ == 1.0) return false;
-  const Lesson<Pose> far = beyond(found, now_, assessment_.most_odometry(), stride_);
+  const Lesson<Pose> far = beyond(found, now_, objective_.most_odometry(), stride_);
   const bool gains =
       about_the_same(far.scale, now_.scale) && try_with(scales_of(far), {.gain = found.gain});
   stride_ = gains ? 2.0 * stride_ : 1.0;
@@ -512,7 +501,7 @@ bool Climb<Pose>::take_farther(const Lesson<Pose>& found) {
 // Whether that gains as much, or else nothing changes. Scales at which the normal equations break
 // down explain nothing.
 template <class Pose>
-bool Climb<Pose>::try_with(const Change& change, const Terms& terms) {
+bool Climb<Pose>::try_with(const Change& change, const TrialTerms<Pose>& terms) {
   const Place before = place();
   change(now_);
   if (terms.from) assessment_.stand_on(*terms.from);

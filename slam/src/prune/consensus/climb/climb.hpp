@@ -16,6 +16,14 @@
 
 namespace isotherm::slam::detail {
 
+/// What a trial is to gain, with the map sought from a layout, and by what can be learnt then.
+template <class Pose>
+struct TrialTerms {
+  double gain = kBetter;
+  const typename Estimate<Pose>::Layout* from = nullptr;
+  bool learning = false;
+};
+
 /// Climbs to an explanation of higher evidence, one move after the other: accept the loops and
 /// the runs of loops that raise it, the most certain first, since every one accepted sharpens
 /// what is predicted of the rest; where some lower it, drop the worst or learn the scales and
@@ -74,16 +82,7 @@ class Climb {
   bool settled() const noexcept { return settled_; }
 
  private:
-  enum Trial {
-    lesson,
-    lesson_of_scales,
-    weights_by_others,
-    afar,
-    many_more,
-    undecided,
-    doubtful,
-    trials
-  };
+  enum Trial { lesson, lesson_of_scales, weights_by_others, afar, undecided, doubtful, trials };
 
   using Layout = typename Estimate<Pose>::Layout;
   using Change = std::function<void(Explanation<Pose>&)>;
@@ -94,13 +93,6 @@ class Climb {
     typename Assessment<Pose>::Findings found;
     std::vector<double> run_density;
     std::array<bool, trials> failed;
-  };
-
-  // What a trial is to gain, with the map sought from a layout, and by what can be learnt then.
-  struct Terms {
-    double gain = kBetter;
-    const Layout* from = nullptr;
-    bool learning = false;
   };
 
   // Where a climb was, and the number of the peak that it led to; of this one that of the next.
@@ -142,11 +134,10 @@ class Climb {
   bool weigh_anew();
   bool weigh_by_others();
   bool weigh_afar();
-  bool accept_many_more(double gain);
   bool accept_undecided();
   bool drop_undecided();
   void draw_anew();
-  bool try_with(const Change& change, const Terms& terms);
+  bool try_with(const Change& change, const TrialTerms<Pose>& terms = {});
   Place place() const { return {now_, assessment_.findings(), run_density_, failed_}; }
   void go_back(const Place& place);
   void predict_runs();

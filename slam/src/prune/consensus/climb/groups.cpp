@@ -7,7 +7,6 @@
 #include "graph/find_root.hpp"
 #include "prune/consensus/constants.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
-#include "prune/consensus/objective/log_prior.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -71,7 +70,7 @@ std::vector<Group> groups_of(const Runs<Pose>& runs, const std::vector<bool>& op
       evidence += own;
     }
     const double prior = standings[seed].log_odds - standings[seed].evidence;
-    groups.push_back({std::move(loops), prior + evidence, evidence, standings[seed].parts});
+    groups.push_back({std::move(loops), prior + evidence, standings[seed].parts});
   }
   return groups;
 }
@@ -81,7 +80,7 @@ Group most_certain(std::vector<Group> groups, std::size_t accepted) {
   Group all;
   std::vector<Index> part = numbered_parts(groups);
   double expected_false = 0.0;
-  for (const auto& [members, gain, evidence, parts] : groups) {
+  for (const auto& [members, gain, parts] : groups) {
     expected_false += probability_of(-gain);
     const bool many =
         all.loops.size() + members.size() > kBatchGrowth * std::max<std::size_t>(accepted, 1);
@@ -96,29 +95,6 @@ Group most_certain(std::vector<Group> groups, std::size_t accepted) {
     all.gain += gain;
   }
   return all;
-}
-
-// By evidence a loop: of as many loops these have most.
-Group likeliest_together(std::vector<Group> groups, std::size_t accepted, std::size_t all) {
-  std::erase_if(groups, [](const Group& group) { return group.parts.first != group.parts.second; });
-  std::ranges::stable_sort(groups, std::greater{}, [](const Group& group) {
-    return group.evidence / static_cast<double>(group.loops.size());
-  });
-  const double before = log_prior(accepted, all);
-  Group together;
-  std::size_t most = 0;  // loops, where they gain most
-  double evidence = 0.0;
-  for (const Group& group : groups) {
-    together.loops.insert(together.loops.end(), group.loops.begin(), group.loops.end());
-    evidence += group.evidence;
-    const double prior = log_prior(accepted + together.loops.size(), all) - before;
-    if (evidence + prior <= together.gain) continue;
-    most = together.loops.size();
-    together.evidence = evidence;
-    together.gain = evidence + prior;
-  }
-  together.loops.resize(most);
-  return together;
 }
 
 template std::vector<Group> groups_of(const Runs<Pose2>&, const std::vector<bool>&,

@@ -13,7 +13,6 @@ namespace isotherm::slam::detail {
 struct Group {
   std::vector<Index> loops;       ///< ascending
   double gain = 0.0;              ///< evidence, and the log odds of any loop being true
-  double evidence = 0.0;          ///< of all its loops
   std::pair<Index, Index> parts;  ///< of the map that its first loop joins
 };
 
@@ -31,10 +30,5 @@ std::vector<Group> groups_of(const Runs<Pose>& runs, const std::vector<bool>& op
 /// `accepted`, those in force; of groups that nothing connects to the map those that join
 /// parts that no better one joins already.
 Group most_certain(std::vector<Group> groups, std::size_t accepted);
-
-/// The groups that gain most together, of all loops, where `accepted` of `all` are in force: the
-/// more are true, the likelier any is, so that many may gain though none does alone. Only of those
-/// that the map predicts; none where that is nothing.
-Group likeliest_together(std::vector<Group> groups, std::size_t accepted, std::size_t all);
 
 }  // namespace isotherm::slam::detail

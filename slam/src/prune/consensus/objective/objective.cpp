@@ -9,7 +9,6 @@
 #include "prune/consensus/estimate/log_normal.hpp"
 #include "prune/consensus/estimate/map_volume.hpp"
 #include "prune/consensus/estimate/step_spread.hpp"
-#include "prune/consensus/objective/log_prior.hpp"
 #include "prune/consensus/objective/own_frames.hpp"
 
 namespace isotherm::slam::detail {
@@ -17,6 +16,15 @@ namespace {
 
 // Steps that vary less, in times of what the file says that they err by, are commands or rounded.
 constexpr double kLeastSpread = 1e-6;
+
+// Log probability that just certain `kept` of `all` loops are true, of a share that may be any
+// (Beta-binomial).
+double log_prior(std::size_t kept, std::size_t all) {
+  const auto log_factorial = [](std::size_t n) {
+    return std::lgamma(static_cast<double>(n) + 1.0);
+  };
+  return log_factorial(kept) + log_factorial(all - kept) - log_factorial(all + 1);
+}
 
 template <class Pose>
 typename Pose::Tangent most_scales(const StepSpread& spread) {
