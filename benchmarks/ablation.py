@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""What every constant of consensus is worth, on graphs that none was chosen on.
+"""What every constant and move of consensus is worth, on graphs that none was chosen on.
 
-Builds a copy of the sources in which each constant below is read from the environment, and judges
-the same graphs with one constant changed at a time: every small graph in some of the variants of
+Builds a copy of the sources in which each constant below is read from the environment, and whether
+each move is made, and judges the same graphs with one changed at a time: every small graph in some of the variants of
 support/variants.py, drawn with another seed than those that the search was looked at with, clean
 and with half of the loops false. Writes docs/results/ablation.md and docs/results/data/ablation.csv.
 Runs are kept in build/ablation, so that an interrupted run goes on where it stopped.
@@ -47,6 +47,33 @@ CONSTANTS = [
     Constant("kSameWeight", "0.05", "change of a log weight that matters", (0.005, 0.5)),
     Constant("kNodes", "4", "nodes to either side, for an integral", (0, 8)),
 ]
+# Of each move the place in a source behind which it is left out, and how.
+CLIMB = "climb/climb.cpp"
+MOVES = {
+    "lessons of the common scales alone":
+        (CLIMB, "    if (failed_[trial]) continue;\n",
+         "if (trial == Trial::lesson_of_scales && {off}) continue;"),
+    "most loops called wider or sharper":
+        ("climb/learn.cpp", "sharper_most(shares)}) {\n", "if (start.factor != 1.0 && {off}) continue;"),
+    "lessons taken farther": (CLIMB, "::take_farther(const Lesson<Pose>& found) {\n",
+                              "if ({off}) return false;"),
+    "loops weighed by the others": (CLIMB, "::weigh_by_others() {\n", "if ({off}) return false;"),
+    "the look afar": (CLIMB, "::weigh_afar() {\n", "if ({off}) return false;"),
+    "all accepted that are not false beyond doubt":
+        (CLIMB, "::accept_undecided() {\n", "if ({off}) return false;"),
+    "all dropped that are not true beyond doubt":
+        (CLIMB, "::drop_undecided() {\n", "if ({off}) return false;"),
+    "the map drawn anew": (CLIMB, "::draw_anew() {\n", "if ({off}) return;"),
+    "climbs ended where an earlier one passed": (CLIMB, "::peak_ahead(bool learnt) {\n",
+                                                 "if ({off}) return nullptr;"),
+    "climbs ended that have fallen behind": (CLIMB, "::has_fallen_behind() const {\n",
+                                             "if ({off}) return false;"),
+    "scales settled anew":
+        ("climb/search.cpp", "void settle_anew(const Climb<Pose>& climb, "
+         "std::vector<Explanation<Pose>>& found) {\n", "if ({off}) return;"),
+    "starts where most gains": ("climb/starts.cpp", "gaining_starts(Climb<Pose>& climb) {\n",
+                                "if ({off}) return {{}};"),
+}
 STARTS = ["as stated", "odometry x 100", "loops x 0.01", "both x 0.01"]
 FLAGS = {"window 5": ["--window", 5], "window 80": ["--window", 80],
          "scales as stated": ["--no-calibrate"]}
@@ -64,6 +91,14 @@ def instrument(tree):
              for name in ("double kWorst", "double kOther", "ByScale kPriorLoops")])
     replace(room / "objective/loop_gain.cpp", [("2 * kNodes + 1, 1>", "Eigen::Dynamic, 1>")])
     replace(tree / "slam/src/online/engine.cpp", [("constexpr Index kFirst", "const Index kFirst")])
+    replace(room / "constants.hpp",
+            [("namespace isotherm::slam::detail {\n",
+              "namespace isotherm::slam::detail {\ninline bool is_off(int move) {\n"
+              f'  const char* off = std::getenv("{PREFIX}kMoves");\n'
+              "  return off && std::atoi(off) == move;\n}\n")])
+    for k, (source, behind, left_out) in enumerate(MOVES.values()):
+        text = behind + left_out.format(off=f"is_off({k})") + "\n"
+        replace(room / source, [(behind, text)])
     loop = "for (const auto& [odometry, loops] : kStarts) {"
     replace(room / "climb/starts.hpp",
             [(loop, f'int start = 0;\n  {loop}\n'
@@ -110,10 +145,10 @@ def measure(command, flags, cells):
 
 
 def page(base, rows, cell_count):
-    lines = ["# What constants are worth", "",
-             "Made by `benchmarks/ablation.py`: consensus with one constant changed at a time, on",
-             f"{cell_count} graphs that none was chosen on (variants and false loops drawn with "
-             f"seed {SEED},", "clean and with half of the loops false; every row is in",
+    lines = ["# What constants and moves are worth", "",
+             "Made by `benchmarks/ablation.py`: consensus with one constant changed at a time, or",
+             f"one move of its search not made, on {cell_count} graphs that none was chosen on",
+             f"(variants and false loops drawn with seed {SEED}, clean and with half of the loops false; every row is in",
              "[data/ablation.csv](data/ablation.csv)). *Right*: cells with at least "
              f"{FEW} true loops whose", "precision and recall of what is not pruned are both "
              "≥ .98. *Evidence*: cells in which that of", f"the answer is higher and lower by more "
@@ -133,6 +168,8 @@ def page(base, rows, cell_count):
     lines += [line_of("`kStarts`", "scales that climbs start from", "four", f"without {name}",
                       rows[f"kStarts={k}"], base, True)
               for k, name in enumerate(STARTS) if f"kStarts={k}" in rows]
+    lines += [line_of("move", name, "made", "not", rows[f"kMoves={k}"], base, True)
+              for k, name in enumerate(MOVES) if f"kMoves={k}" in rows]
     lines += [line_of("option", "", "20" if "window" in name else "learnt", name, rows[name], base,
                       False) for name in FLAGS if name in rows]
     return "\n".join(lines) + "\n"
@@ -168,6 +205,7 @@ def main():
     runs |= {f"{constant.name}={value:g}": ({constant.name: value}, [])
              for constant in CONSTANTS for value in constant.tried}
     runs |= {f"kStarts={k}": ({"kStarts": k}, []) for k in range(len(STARTS))}
+    runs |= {f"kMoves={k}": ({"kMoves": k}, []) for k in range(len(MOVES))}
     runs |= {name: ({}, flags) for name, flags in FLAGS.items()}
     results = Results(folder / "runs")
     if not options.page_only:
