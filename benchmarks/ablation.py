@@ -66,8 +66,6 @@ MOVES = {
     "the map drawn anew": (CLIMB, "::draw_anew() {\n", "if ({off}) return;"),
     "climbs ended where an earlier one passed": (CLIMB, "::peak_ahead(bool learnt) {\n",
                                                  "if ({off}) return nullptr;"),
-    "climbs ended that have fallen behind": (CLIMB, "::has_fallen_behind() const {\n",
-                                             "if ({off}) return false;"),
     "scales settled anew":
         ("climb/search.cpp", "void settle_anew(const Climb<Pose>& climb, "
          "std::vector<Explanation<Pose>>& found) {\n", "if ({off}) return;"),

@@ -221,8 +221,6 @@ void Climb<Pose>::begin() {
   learnt_from_ = drawn_from_ = 0;
   stride_ = 1.0;
   failed_ = {};
-  longest_ = std::max(longest_, passed_.size() - began_);
-  began_ = passed_.size();
   assessment_.assess(now_);
   predict_runs();
   best_ = now_;
@@ -245,17 +243,10 @@ const Explanation<Pose>* Climb<Pose>::grow() {
     const double enough = std::max(summit() - best_.evidence, 0.0) / kPatience;
     const bool grows = 2 * now_.accepted_count() >= 3 * had;
     vain = grows || best_.evidence - before > enough ? 0 : vain + 1;
-    if (vain == kPatience || has_fallen_behind()) return nullptr;
+    if (vain == kPatience) return nullptr;
   }
   settled_ = false;
   return nullptr;
-}
-
-// Below the highest peak after more than the longest climb to any.
-template <class Pose>
-bool Climb<Pose>::has_fallen_behind() const {
-  const std::size_t enough = std::max<std::size_t>(longest_, kPatience);
-  return best_.evidence < summit() && passed_.size() - began_ > enough;
 }
 
 // False where no move is left.

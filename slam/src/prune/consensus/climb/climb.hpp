@@ -114,7 +114,6 @@ class Climb {
   bool outdoes(double evidence);
   double summit() const;
   const Explanation<Pose>* grow();
-  bool has_fallen_behind() const;
   bool move();
   bool shift();
   bool assess(double least = -std::numeric_limits<double>::infinity());
@@ -156,8 +155,6 @@ class Climb {
   std::vector<double> run_density_;       // log p(z | the loop before in its run)
   std::vector<Explanation<Pose>> peaks_;  // of earlier climbs
   std::vector<Passed> passed_;
-  std::size_t began_ = 0;              // of those passed, this climb
-  std::size_t longest_ = 0;            // of earlier climbs
   std::vector<bool> dropped_;          // since the climb last rose; not tried again
   std::size_t learnt_from_ = 0;        // loops, at the last lesson
   double stride_ = 1.0;                // of the next lesson of the same loops
