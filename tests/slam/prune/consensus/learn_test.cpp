@@ -115,6 +115,9 @@ TYPED_TEST(LessonOf, LeadsFartherOnTheSameWay) {
   EXPECT_NEAR(std::log(odds(thrice.shares) / odds(now.shares)),
               3.0 * std::log(odds(lesson.shares) / odds(now.shares)), 1e-9);
 
+  const auto very_far = beyond(lesson, now, most, 1e6);
+  EXPECT_NEAR(very_far.shares.count(), lesson.shares.count(), 1e-9) << "however far";
+
   const Tangent least = Tangent::Constant(std::log(lesson.scale.odometry) - 1.0);
   const auto held = beyond(lesson, now, least, 3.0);
   EXPECT_LE(log_scales(held.scale.odometry, held.shapes.odometry).maxCoeff(), least[0] + 1e-12);

@@ -285,10 +285,15 @@ Lesson<Pose> beyond(const Lesson<Pose>& lesson, const Explanation<Pose>& now,
   std::tie(far.scale.loops, far.shapes.loops) =
       farther(log_scales(now.scale.loops, now.shapes.loops),
               log_scales(lesson.scale.loops, lesson.shapes.loops), Tangent::Constant(kMostScale));
+  ByScale logs;
   for (std::size_t j = 0; j < kScaleCount; ++j) {
-    if (now.shares.loops[j] == 0.0) continue;
-    far.shares.loops[j] *= std::pow(lesson.shares.loops[j] / now.shares.loops[j], stride - 1.0);
+    const double after = lesson.shares.loops[j];
+    const double before = now.shares.loops[j];
+    logs[j] = after > 0.0 ? std::log(after) : kNever;
+    if (after > 0.0 && before > 0.0) logs[j] += (stride - 1.0) * std::log(after / before);
   }
+  const double most = *std::ranges::max_element(logs);
+  for (std::size_t j = 0; j < kScaleCount; ++j) far.shares.loops[j] = std::exp(logs[j] - most);
   const double more = far.shares.count() / lesson.shares.count();
   for (double& share : far.shares.loops) share /= more;
   return far;
