@@ -2,10 +2,10 @@
 """What every constant and move of consensus is worth, on graphs that none was chosen on.
 
 Builds a copy of the sources in which each constant below is read from the environment, and whether
-each move is made, and judges the same graphs with one changed at a time: every small graph in some of the variants of
-support/variants.py, drawn with another seed than those that the search was looked at with, clean
-and with half of the loops false. Writes docs/results/ablation.md and docs/results/data/ablation.csv.
-Runs are kept in build/ablation, so that an interrupted run goes on where it stopped.
+each move is made, and judges the same graphs with one changed at a time: every small graph in some
+of the variants of support/variants.py, drawn with another seed than those that the search was
+looked at with, clean and with half of the loops false. Writes docs/results/ablation.md and
+docs/results/data/ablation.csv. Runs are kept in build/ablation, so that an interrupted run goes on where it stopped.
 """
 
 import csv
@@ -146,8 +146,8 @@ def page(base, rows, cell_count):
     lines = ["# What constants and moves are worth", "",
              "Made by `benchmarks/ablation.py`: consensus with one constant changed at a time, or",
              f"one move of its search not made, on {cell_count} graphs that none was chosen on",
-             f"(variants and false loops drawn with seed {SEED}, clean and with half of the loops false; every row is in",
-             "[data/ablation.csv](data/ablation.csv)). *Right*: cells with at least "
+             f"(variants and false loops drawn with seed {SEED}, clean and with half of the loops",
+             "false; every row is in [data/ablation.csv](data/ablation.csv)). *Right*: cells with at least "
              f"{FEW} true loops whose", "precision and recall of what is not pruned are both "
              "≥ .98. *Evidence*: cells in which that of", f"the answer is higher and lower by more "
              f"than {NATS:g} nat; where the model itself is changed it", "cannot be compared. "

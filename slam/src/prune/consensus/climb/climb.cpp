@@ -472,9 +472,12 @@ bool Climb<Pose>::learn_more_than(double gain, bool at_last) {
 // Whether a lesson gains, or more of it than it says.
 template <class Pose>
 bool Climb<Pose>::take(const Lesson<Pose>& found, bool at_last) {
-  if (at_last && take_farther(found)) return true;
-  if (!try_with(scales_of(found))) return false;
-  if (at_last) stride_ *= 2.0;
+  if (!at_last) return try_with(scales_of(found));
+  if (!take_farther(found)) {
+    stride_ = 1.0;
+    if (!try_with(scales_of(found))) return false;
+  }
+  stride_ *= 2.0;
   return true;
 }
 
@@ -483,10 +486,7 @@ template <class Pose>
 bool Climb<Pose>::take_farther(const Lesson<Pose>& found) {
   if (stride_ == 1.0) return false;
   const Lesson<Pose> far = beyond(found, now_, objective_.most_odometry(), stride_);
-  const bool gains =
-      about_the_same(far.scale, now_.scale) && try_with(scales_of(far), {.gain = found.gain});
-  stride_ = gains ? 2.0 * stride_ : 1.0;
-  return gains;
+  return about_the_same(far.scale, now_.scale) && try_with(scales_of(far), {.gain = found.gain});
 }
 
 // Whether that gains as much, or else nothing changes. Scales at which the normal equations break

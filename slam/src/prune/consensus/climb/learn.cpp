@@ -286,11 +286,13 @@ Lesson<Pose> beyond(const Lesson<Pose>& lesson, const Explanation<Pose>& now,
       farther(log_scales(now.scale.loops, now.shapes.loops),
               log_scales(lesson.scale.loops, lesson.shapes.loops), Tangent::Constant(kMostScale));
   ByScale logs;
+  logs.fill(kNever);
   for (std::size_t j = 0; j < kScaleCount; ++j) {
     const double after = lesson.shares.loops[j];
     const double before = now.shares.loops[j];
-    logs[j] = after > 0.0 ? std::log(after) : kNever;
-    if (after > 0.0 && before > 0.0) logs[j] += (stride - 1.0) * std::log(after / before);
+    if (after == 0.0) continue;
+    logs[j] = std::log(after);
+    if (before > 0.0) logs[j] += (stride - 1.0) * std::log(after / before);
   }
   const double most = *std::ranges::max_element(logs);
   for (std::size_t j = 0; j < kScaleCount; ++j) far.shares.loops[j] = std::exp(logs[j] - most);
