@@ -91,10 +91,12 @@ class Localization {
     for (std::size_t k = 0; k < use_.size(); ++k) use_[k] = is_correct(k);
   }
 
-  // Likelier than not, given all others.
+  // Likelier than not, given all others, and held to: a part that turns freely could meet any of
+  // its ties, and is held by none that it does not.
   bool is_correct(std::size_t k) const {
-    return judged_[k].checked ? judged_[k].loss.probability[kCorrect] >= detail::kLikely
-                              : weighed_.weighs[k];
+    const auto& range = judged_[k];
+    return range.checked ? range.fits && range.loss.probability[kCorrect] >= detail::kLikely
+                         : weighed_.weighs[k];
   }
 
   // Scales the standard deviations to those that the errors most likely have. True if that changed

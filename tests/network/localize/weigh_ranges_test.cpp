@@ -94,6 +94,25 @@ TEST(WeighRanges, WhereNothingIsTooLongThereIsMoreEvidenceForNoSuchKind) {
 }
 
 // The gradient of the density vanishes where it is said to be largest.
+TEST(JudgeRanges, NoTieFitsAPartThatIsElsewhere) {
+  Case c(10, 0);
+  auto weighed = weigh_ranges(c.problem, {}, {}, c.placement);
+  for (Index v = 0; v < 10; ++v) {
+    if (!c.problem.is_anchor[v]) c.placement.positions.col(v) += Eigen::Vector2d(3.0, 4.0);
+  }
+  const auto crosses = [&](std::size_t k) {
+    const auto& range = c.problem.ranges[k];
+    return c.problem.is_anchor[range.from] != c.problem.is_anchor[range.to];
+  };
+  for (std::size_t k = 0; k < weighed.weighs.size(); ++k) {
+    weighed.weighs[k] = weighed.weighs[k] && !crosses(k);
+  }
+  const auto judged = judge_ranges(c.problem, weighed, c.placement);
+  for (std::size_t k = 0; k < judged.size(); ++k) {
+    EXPECT_EQ(judged[k].fits, !crosses(k));
+  }
+}
+
 TEST(WeighRanges, EndsAtAMaximumOfTheDensity) {
   Case c(12, 20);
   const auto weighed = weigh_ranges(c.problem, {}, {}, c.placement);

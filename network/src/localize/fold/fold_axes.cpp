@@ -85,9 +85,7 @@ class AxisSearch {
       : problem_(problem),
         ties_(ties),
         most_cost_(most_cost),
-        // Without anchors a part is what turns beside the rest, which is larger.
-        most_(problem.anchored() ? kLargestPart
-                                 : std::min(kLargestPart, placed_count(placement) / 2)),
+        most_(largest_part(problem, placement)),
         known_(problem.nodes, 0),
         part_of_(problem.nodes, 0),
         strings_(problem.nodes, {0, 0}) {}

@@ -4,6 +4,7 @@
 
 #include "localize/constants.hpp"
 #include "localize/fold/fold_axes.hpp"
+#include "localize/fold/loose_parts.hpp"
 #include "localize/fold/part_move.hpp"
 #include "localize/refine/robust_refine.hpp"
 
@@ -16,7 +17,7 @@ bool open_folds(const RangeProblem& problem, const std::vector<bool>& trusted, d
   std::vector<bool> among(problem.nodes, true);
   for (int round = 0; round < kMostRounds; ++round) {
     const auto evidence = learn_evidence(problem, trusted, placement);
-    std::vector<PartMove> moves;
+    auto moves = loose_parts(problem, trusted, gate, evidence, options, placement);
     for (const auto& fold : find_folds(problem, trusted, evidence, options, placement, among)) {
       moves.push_back(fold.move(placement));
     }

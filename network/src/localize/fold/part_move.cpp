@@ -189,6 +189,10 @@ class Trial {
 
 }  // namespace
 
+Index largest_part(const RangeProblem& problem, const Placement& placement) {
+  return problem.anchored() ? kLargestPart : std::min(kLargestPart, placed_count(placement) / 2);
+}
+
 MoveOutcome try_move(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
                      const Evidence& evidence, const Crowd& crowd, const Placement& placement,
                      const PartMove& move) {

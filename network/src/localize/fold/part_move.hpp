@@ -15,6 +15,10 @@ struct PartMove {
   Eigen::MatrixXd positions;  ///< dimension x part
 };
 
+/// Nodes of the largest part that is looked at. Without anchors a part is what turns beside the
+/// rest, which is larger.
+Index largest_part(const RangeProblem& problem, const Placement& placement);
+
 /// What comes of moving it there.
 struct MoveOutcome {
   std::vector<Index> moved;   ///< nodes that are elsewhere then, by more than noise; ascending

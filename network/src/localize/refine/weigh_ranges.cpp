@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "localize/constants.hpp"
 #include "localize/evidence/crowd.hpp"
 #include "localize/evidence/evidence.hpp"
 #include "localize/refine/range_information.hpp"
@@ -90,6 +91,7 @@ std::vector<JudgedRange> judge_ranges(const RangeProblem& problem, const Weighed
     const auto loss = range_loss(weighed.model, error, noise);
     const double curvature = weighed.weighs[k] ? weighed.information[k] : 0.0;
     auto& range = judged[k];
+    range.fits = loss.probability[kCorrect] >= kLikely;
     range.moments = range_moments(weighed.model, error, noise);
     range.fitted = std::min(1.0, curvature * variances[k]);
     const auto without = left_out(loss, error, noise, variances[k], curvature);

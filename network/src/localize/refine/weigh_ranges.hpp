@@ -34,6 +34,7 @@ WeighedRanges weigh_ranges_again(const RangeProblem& problem, const Absence& abs
 /// it.
 struct JudgedRange {
   bool checked = false;
+  bool fits = false;     ///< likelier correct than not where its ends are
   RangeLoss loss;        ///< where the others predict it
   RangeMoments moments;  ///< with it
   double fitted = 0.0;   ///< of its degree of freedom, what the estimate has used up

@@ -1,0 +1,190 @@
+#include "localize/fold/loose_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "isotherm/base/parallel.hpp"
+#include "localize/constants.hpp"
+#include "localize/evidence/star.hpp"
+
+namespace isotherm::network::detail {
+namespace {
+
+using Nodes = std::vector<Index>;
+
+constexpr std::size_t kLeastRigid = 3;  // nodes of a part
+
+// Pairs that fit a place in the plane, at any: one more is needed.
+constexpr std::size_t kMotions = 3;
+
+// Grows rigid parts of a map, one after the other.
+class LooseSearch {
+ public:
+  LooseSearch(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
+              const Placement& placement)
+      : problem_(problem),
+        trusted_(trusted),
+        placement_(placement),
+        most_(largest_part(problem, placement)),
+        seen_(problem.nodes, false) {
+    fits_.reserve(problem.pairs.size());
+    for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
+      const auto& pair = problem.pairs[p];
+      fits_.push_back(trusted[p] && is_placed(placement, pair) &&
+                      squared_deviation(placement, pair) <= gate);
+    }
+  }
+
+  std::vector<Nodes> parts() {
+    std::vector<Nodes> found;
+    for (std::size_t p = 0; p < problem_.pairs.size(); ++p) {
+      const auto& pair = problem_.pairs[p];
+      if (!trusted_[p] || fits_[p] || !is_placed(placement_, pair)) continue;
+      for (const Index end : {pair.from, pair.to}) {
+        if (seen_[end]) continue;
+        if (auto part = part_with(end)) found.push_back(std::move(*part));
+      }
+    }
+    return found;
+  }
+
+ private:
+  // Nothing where it belongs to what is large, or to nothing rigid.
+  std::optional<Nodes> part_with(Index node) {
+    for (const auto& [vertex, edge] : problem_.pair_graph.neighbours(node)) {
+      if (!fits_[edge]) continue;
+      auto part = grown({node, vertex});
+      if (part.size() < kLeastRigid) continue;
+      if (!turns(part)) return std::nullopt;
+      for (const Index v : part) seen_[v] = true;
+      std::sort(part.begin(), part.end());
+      return part;
+    }
+    return std::nullopt;
+  }
+
+  bool turns(const Nodes& part) const {
+    return static_cast<Index>(part.size()) <= most_ &&
+           std::ranges::none_of(part, [&](Index v) { return problem_.is_anchor[v]; });
+  }
+
+  // As long as it turns.
+  Nodes grown(Nodes part) const {
+    std::unordered_map<Index, int> ties;  // two: in the part
+    for (const Index v : part) ties[v] = 2;
+    for (std::size_t k = 0; k < part.size() && turns(part); ++k) {
+      for (const auto& [vertex, edge] : problem_.pair_graph.neighbours(part[k])) {
+        if (!fits_[edge]) continue;
+        int& count = ties[vertex];
+        if (count < 2 && ++count == 2) part.push_back(vertex);
+      }
+    }
+    return part;
+  }
+
+  const RangeProblem& problem_;
+  const std::vector<bool>& trusted_;
+  const Placement& placement_;
+  Index most_;              // nodes of a part
+  std::vector<bool> fits_;  // pairs
+  std::vector<bool> seen_;  // nodes of parts that were found
+};
+
+// A part beside what it is tied to.
+class LoosePart {
+ public:
+  LoosePart(const RangeProblem& problem, const std::vector<bool>& trusted, const Evidence& evidence,
+            const Placement& placement, Nodes part)
+      : placement_(placement), part_(std::move(part)) {
+    const auto places = placement.positions(Eigen::all, part_);
+    middle_ = places.rowwise().mean();
+    for (const Index v : part_) {
+      for (const auto& [vertex, edge] : problem.pair_graph.neighbours(v)) {
+        const bool inside = std::ranges::binary_search(part_, vertex);
+        if (inside || !trusted[edge] || !placement.placed[vertex]) continue;
+        const auto& pair = problem.pairs[edge];
+        const Eigen::Vector2d from_middle = placement.positions.col(v) - middle_;
+        ties_.push_back({placement.positions.col(vertex), from_middle, pair.distance, pair.sigma,
+                         evidence.cost_of(pair.sigma)});
+      }
+    }
+  }
+
+  bool is_tied() const { return ties_.size() > kMotions; }
+
+  // Where it fits best, mirrored or not.
+  std::optional<PartMove> best(bool mirrored) const {
+    constexpr int kTurns = 360;
+    std::optional<PartMove> found;
+    double least = 0.0;
+    for (int k = 0; k < kTurns; ++k) {
+      const Eigen::Matrix2d turn = turned(2.0 * std::numbers::pi * k / kTurns, mirrored);
+      const auto place = multilaterate(star(turn, std::numbers::pi / kTurns));
+      if (!place || (found && place->cost >= least)) continue;
+      least = place->cost;
+      found = PartMove{part_, placement_.positions(Eigen::all, part_)};
+      for (auto p : found->positions.colwise()) p = (place->position + turn * (p - middle_)).eval();
+    }
+    return found;
+  }
+
+ private:
+  struct Tie {
+    Eigen::Vector2d end;          // of the other node
+    Eigen::Vector2d from_middle;  // that of the part's
+    double distance = 0.0;
+    double sigma = 1.0;
+    RangeCost cost;
+  };
+
+  static Eigen::Matrix2d turned(double angle, bool mirrored) {
+    Eigen::Matrix2d turn = Eigen::Rotation2Dd(angle).toRotationMatrix();
+    if (mirrored) turn.col(1) *= -1.0;
+    return turn;
+  }
+
+  // What its ties say of its middle, being turned so, or by a little more or less.
+  Star star(const Eigen::Matrix2d& turn, double little) const {
+    Star result;
+    for (const Tie& tie : ties_) {
+      const Point end = tie.end - turn * tie.from_middle;
+      const double sigma = std::hypot(tie.sigma, little * tie.from_middle.norm());
+      result.arms.push_back({end, tie.distance, sigma, tie.cost});
+    }
+    return result;
+  }
+
+  const Placement& placement_;
+  Nodes part_;
+  Eigen::Vector2d middle_;
+  std::vector<Tie> ties_;
+};
+
+}  // namespace
+
+std::vector<PartMove> loose_parts(const RangeProblem& problem, const std::vector<bool>& trusted,
+                                  double gate, const Evidence& evidence,
+                                  const LocalizeOptions& options, const Placement& placement) {
+  if (problem.dimension != 2) return {};
+  std::vector<LoosePart> parts;
+  for (auto& part : LooseSearch(problem, trusted, gate, placement).parts()) {
+    LoosePart loose(problem, trusted, evidence, placement, std::move(part));
+    if (loose.is_tied()) parts.push_back(std::move(loose));
+  }
+  std::vector<std::optional<PartMove>> found(2 * parts.size());
+  parallel_for(static_cast<std::int64_t>(found.size()), options.threads, options.progress, "parts",
+               [&](std::int64_t k) { found[k] = parts[k / 2].best(k % 2 == 1); });
+  std::vector<PartMove> moves;
+  for (auto& move : found) {
+    if (move) moves.push_back(std::move(*move));
+  }
+  return moves;
+}
+
+}  // namespace isotherm::network::detail
