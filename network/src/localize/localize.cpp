@@ -166,11 +166,15 @@ class Localization {
 
   // One look at all placed nodes. True if any was dropped.
   bool drop_undetermined() {
-    const auto statuses = detail::determinacy(problem_, use_, placement_);
+    auto statuses = detail::determinacy(problem_, use_, placement_);
+    const auto known = covariances();
     const auto firm = detail::firm_nodes(problem_, trusted_, gate_, options_, placement_);
     bool any = false;
     for (Index v = 0; v < problem_.nodes; ++v) {
       if (!placement_.placed[v] || problem_.is_anchor[v]) continue;
+      if (std::sqrt(known[v].trace()) > problem_.typical_distance) {
+        statuses[v] = NodeStatus::not_rigid;  // one range to a neighbour tells as much
+      }
       if (statuses[v] == NodeStatus::localised && firm[v]) continue;
       const bool has_rival = statuses[v] == NodeStatus::localised;
       statuses_[v] = has_rival ? NodeStatus::mirrored : statuses[v];
@@ -182,6 +186,14 @@ class Localization {
       use_[k] = use_[k] && placement_.placed[range.from] && placement_.placed[range.to];
     }
     return any;
+  }
+
+  std::vector<Eigen::MatrixXd> covariances() const {
+    return options_.method == LocalizeMethod::robust
+               ? detail::RangeInformation(problem_, weighed_.weighs, placement_,
+                                          weighed_.information)
+                     .covariances()
+               : detail::RangeInformation(problem_, use_, placement_).covariances();
   }
 
   void judge() {
@@ -243,11 +255,7 @@ class Localization {
   }
 
   LocalizeResult finish() {
-    result_.covariances =
-        options_.method == LocalizeMethod::robust
-            ? detail::RangeInformation(problem_, weighed_.weighs, placement_, weighed_.information)
-                  .covariances()
-            : detail::RangeInformation(problem_, use_, placement_).covariances();
+    result_.covariances = covariances();
     result_.positions = placement_.positions;
     for (Index v = 0; v < problem_.nodes; ++v) {
       if (placement_.placed[v]) continue;

@@ -378,5 +378,25 @@ TEST(Localize, CanBeCancelled) {
   EXPECT_THROW(localize(simulated.network, options), Cancelled);
 }
 
+// Rigid, and every node in one place by its neighbours, but it bends within the noise.
+TEST(Localize, WhatOneRangeWouldTellAsWellHasNoPlace) {
+  constexpr int kRungs = 60;
+  Eigen::MatrixXd truth(2, 2 * kRungs);
+  for (int k = 0; k < 2 * kRungs; ++k) truth.col(k) << k / 2, k % 2;
+  std::vector<std::pair<int, int>> pairs;
+  for (int a = 0; a < truth.cols(); ++a) {
+    for (int b = a + 1; b < std::min<int>(a + 6, 2 * kRungs); ++b) pairs.emplace_back(a, b);
+  }
+  auto network = exact_network(truth, pairs, {0, 1, 2, 3});
+  for (auto& range : network.ranges) range.variance = 0.0025;
+  const auto result = localize(network, {.estimate_noise = false});
+  EXPECT_EQ(result.nodes[8], NodeStatus::localised);
+  EXPECT_EQ(result.nodes.back(), NodeStatus::not_rigid);
+  for (std::size_t v = 4; v < result.nodes.size(); ++v) {
+    if (result.nodes[v] != NodeStatus::localised) continue;
+    EXPECT_LT(std::sqrt(result.covariances[v].trace()), 1.5);
+  }
+}
+
 }  // namespace
 }  // namespace isotherm::network

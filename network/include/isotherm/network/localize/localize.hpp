@@ -32,7 +32,8 @@ enum class NodeStatus {
   anchor,         ///< its position was given
   localised,      ///< its position and covariance are in the result
   mirrored,       ///< rigid, but a mirror image of it or its surroundings fits as well
-  not_rigid,      ///< it can move without changing any trusted range
+  not_rigid,      ///< it can move without changing any trusted range, or by more than a typical one
+                  ///< within the noise
   not_connected,  ///< no trusted ranges lead to the anchors (or to the largest part)
   not_placed,     ///< nothing of the above, but no start was found for it
 };
