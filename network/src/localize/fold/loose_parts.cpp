@@ -61,8 +61,8 @@ class LooseSearch {
       if (!fits_[edge]) continue;
       auto part = grown({node, vertex});
       if (part.size() < kLeastRigid) continue;
-      if (!turns(part)) return std::nullopt;
       for (const Index v : part) seen_[v] = true;
+      if (!turns(part)) return std::nullopt;
       std::sort(part.begin(), part.end());
       return part;
     }
@@ -93,7 +93,7 @@ class LooseSearch {
   const Placement& placement_;
   Index most_;              // nodes of a part
   std::vector<bool> fits_;  // pairs
-  std::vector<bool> seen_;  // nodes of parts that were found
+  std::vector<bool> seen_;  // nodes of parts that were grown
 };
 
 // A part beside what it is tied to.
