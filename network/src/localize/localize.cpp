@@ -172,7 +172,8 @@ class Localization {
     bool any = false;
     for (Index v = 0; v < problem_.nodes; ++v) {
       if (!placement_.placed[v] || problem_.is_anchor[v]) continue;
-      if (std::sqrt(known[v].trace()) > problem_.typical_distance) {
+      const bool bends = std::sqrt(known[v].trace()) > problem_.typical_distance;
+      if (bends && statuses[v] == NodeStatus::localised) {
         statuses[v] = NodeStatus::not_rigid;  // one range to a neighbour tells as much
       }
       if (statuses[v] == NodeStatus::localised && firm[v]) continue;
