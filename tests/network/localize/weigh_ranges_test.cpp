@@ -93,7 +93,6 @@ TEST(WeighRanges, WhereNothingIsTooLongThereIsMoreEvidenceForNoSuchKind) {
   EXPECT_NEAR(fitted, 2.0 * 17.0, 0.5);
 }
 
-// The gradient of the density vanishes where it is said to be largest.
 TEST(JudgeRanges, NoTieFitsAPartThatIsElsewhere) {
   Case c(10, 0);
   auto weighed = weigh_ranges(c.problem, {}, {}, c.placement);
@@ -113,6 +112,7 @@ TEST(JudgeRanges, NoTieFitsAPartThatIsElsewhere) {
   }
 }
 
+// The gradient of the density vanishes where it is said to be largest.
 TEST(WeighRanges, EndsAtAMaximumOfTheDensity) {
   Case c(12, 20);
   const auto weighed = weigh_ranges(c.problem, {}, {}, c.placement);

@@ -102,16 +102,16 @@ class LoosePart {
   LoosePart(const RangeProblem& problem, const std::vector<bool>& trusted, const Evidence& evidence,
             const Placement& placement, Nodes part)
       : placement_(placement), part_(std::move(part)) {
-    const auto places = placement.positions(Eigen::all, part_);
-    middle_ = places.rowwise().mean();
+    middle_ = placement.positions(Eigen::all, part_).rowwise().mean();
     for (const Index v : part_) {
       for (const auto& [vertex, edge] : problem.pair_graph.neighbours(v)) {
         const bool inside = std::ranges::binary_search(part_, vertex);
         if (inside || !trusted[edge] || !placement.placed[vertex]) continue;
         const auto& pair = problem.pairs[edge];
         const Eigen::Vector2d from_middle = placement.positions.col(v) - middle_;
-        ties_.push_back({placement.positions.col(vertex), from_middle, pair.distance, pair.sigma,
-                         evidence.cost_of(pair.sigma)});
+        ties_.push_back({{placement.positions.col(vertex), pair.distance, pair.sigma,
+                          evidence.cost_of(pair.sigma)},
+                         from_middle});
       }
     }
   }
@@ -136,11 +136,8 @@ class LoosePart {
 
  private:
   struct Tie {
-    Eigen::Vector2d end;          // of the other node
+    Arm arm;                      // to the other node
     Eigen::Vector2d from_middle;  // that of the part's
-    double distance = 0.0;
-    double sigma = 1.0;
-    RangeCost cost;
   };
 
   static Eigen::Matrix2d turned(double angle, bool mirrored) {
@@ -153,9 +150,9 @@ class LoosePart {
   Star star(const Eigen::Matrix2d& turn, double little) const {
     Star result;
     for (const Tie& tie : ties_) {
-      const Point end = tie.end - turn * tie.from_middle;
-      const double sigma = std::hypot(tie.sigma, little * tie.from_middle.norm());
-      result.arms.push_back({end, tie.distance, sigma, tie.cost});
+      auto& arm = result.arms.emplace_back(tie.arm);
+      arm.end -= turn * tie.from_middle;
+      arm.sigma = std::hypot(arm.sigma, little * tie.from_middle.norm());
     }
     return result;
   }
