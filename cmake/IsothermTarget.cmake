@@ -41,6 +41,11 @@ function(isotherm_compile_options target)
   endif()
 endfunction()
 
+# For what only reads flags and writes what the libraries found: a third less to compile.
+function(isotherm_optimise_lightly target)
+  target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O1>)
+endfunction()
+
 # isotherm_add_library(<layer> SOURCES ... PUBLIC ... PRIVATE ...)
 # Defines isotherm_<layer> with the alias isotherm::<layer>.
 function(isotherm_add_library layer)

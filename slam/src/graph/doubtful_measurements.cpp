@@ -7,12 +7,12 @@
 #include <numbers>
 #include <string>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "isotherm/base/words.hpp"
 #include "isotherm/slam/graph/information.hpp"
 #include "isotherm/slam/graph/odometry.hpp"
+#include "matrices/decompositions.hpp"
 
 namespace isotherm::slam::detail {
 namespace {

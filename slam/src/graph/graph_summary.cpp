@@ -6,14 +6,13 @@
 #include <set>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
 #include "isotherm/base/statistics.hpp"
 #include "isotherm/base/text_writer.hpp"
 #include "isotherm/slam/graph/information.hpp"
 #include "isotherm/slam/graph/odometry.hpp"
 #include "isotherm/slam/graph/repeats.hpp"
 #include "isotherm/spectral/graph/weighted_graph.hpp"
+#include "matrices/decompositions.hpp"
 
 namespace isotherm::slam {
 namespace {

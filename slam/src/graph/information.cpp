@@ -2,10 +2,8 @@
 
 #include <algorithm>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-
 #include "isotherm/base/error.hpp"
+#include "matrices/decompositions.hpp"
 
 namespace isotherm::slam {
 namespace {

@@ -1,8 +1,7 @@
 #include <cmath>
 
-#include <Eigen/LU>
-
 #include "isotherm/slam/graph/pose.hpp"
+#include "matrices/decompositions.hpp"
 
 namespace isotherm::slam {
 namespace {

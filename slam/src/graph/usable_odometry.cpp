@@ -2,12 +2,10 @@
 
 #include <cmath>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/statistics.hpp"
 #include "isotherm/slam/graph/information.hpp"
+#include "matrices/decompositions.hpp"
 
 namespace isotherm::slam {
 namespace {

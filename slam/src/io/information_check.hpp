@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include "matrices/decompositions.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -39,8 +38,7 @@ bool is_positive_semidefinite(const Matrix& m) {
 template <class Matrix>
 double log_determinant(const Matrix& m) {
   const Eigen::LLT<Matrix> cholesky(m);
-  if (cholesky.info() != Eigen::Success) return -INFINITY;
-  return 2.0 * cholesky.matrixLLT().diagonal().array().log().sum();
+  return cholesky.info() == Eigen::Success ? log_determinant(cholesky) : -INFINITY;
 }
 
 }  // namespace isotherm::slam::detail

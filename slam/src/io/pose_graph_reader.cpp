@@ -6,8 +6,6 @@
 #include <string_view>
 #include <utility>
 
-#include <Eigen/LU>
-
 #include "io/graph_draft.hpp"
 #include "io/incremental/irl_reader.hpp"
 #include "io/incremental/jrl_reader.hpp"
@@ -15,6 +13,7 @@
 #include "io/pose_fields.hpp"
 #include "io/unused_records.hpp"
 #include "isotherm/slam/io/file_format.hpp"
+#include "matrices/decompositions.hpp"
 
 namespace isotherm::slam::detail {
 namespace {

@@ -5,9 +5,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include <Eigen/Cholesky>
-
 #include "isotherm/slam/graph/information.hpp"
+#include "matrices/decompositions.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
 #include "prune/consensus/objective/loop_gain.hpp"
 #include "prune/consensus/objective/own_frames.hpp"

@@ -1,10 +1,8 @@
 #include <string>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-
 #include "isotherm/base/error.hpp"
 #include "isotherm/slam/graph/repeats.hpp"
+#include "matrices/decompositions.hpp"
 #include "optimize/minimize.hpp"
 
 namespace isotherm::slam::detail {

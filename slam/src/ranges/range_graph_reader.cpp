@@ -6,11 +6,9 @@
 #include <string_view>
 #include <unordered_map>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-
 #include "io/pose_fields.hpp"
 #include "isotherm/slam/ranges/range_graph_file.hpp"
+#include "matrices/decompositions.hpp"
 
 namespace isotherm::slam {
 namespace {

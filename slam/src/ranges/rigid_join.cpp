@@ -6,11 +6,10 @@
 #include <numbers>
 #include <utility>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "isotherm/base/statistics.hpp"
+#include "matrices/decompositions.hpp"
 
 namespace isotherm::slam::detail {
 namespace {

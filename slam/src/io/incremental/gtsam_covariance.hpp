@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/LU>
+#include "matrices/decompositions.hpp"
 
 namespace isotherm::slam::detail {
 

@@ -5,8 +5,7 @@
 #include <tuple>
 #include <vector>
 
-#include <Eigen/Cholesky>
-
+#include "matrices/decompositions.hpp"
 #include "prune/consensus/constants.hpp"
 #include "prune/consensus/objective/scale_prior.hpp"
 

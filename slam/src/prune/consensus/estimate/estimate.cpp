@@ -4,14 +4,13 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/parallel.hpp"
 #include "isotherm/base/random.hpp"
 #include "isotherm/slam/optimize/initialize.hpp"
 #include "isotherm/spectral/sparse/block_covariance.hpp"
 #include "isotherm/spectral/sparse/earlier_factor.hpp"
+#include "matrices/decompositions.hpp"
 #include "prune/consensus/constants.hpp"
 
 namespace isotherm::slam::detail {

@@ -4,16 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Cholesky>
+#include "matrices/decompositions.hpp"
 
 namespace isotherm::slam::detail {
 
 inline const double kLog2Pi = std::log(2.0 * std::numbers::pi);
-
-template <class Matrix>
-double log_determinant(const Eigen::LLT<Matrix>& factor) {
-  return 2.0 * factor.matrixLLT().diagonal().array().log().sum();
-}
 
 /// log N(r; 0, S), by the factor of S.
 template <class Pose>

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <Eigen/Cholesky>
+#include "matrices/decompositions.hpp"
 
 namespace isotherm::slam::detail {
 namespace {

@@ -6,10 +6,7 @@
 #include <cstddef>
 #include <optional>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-
+#include "matrices/decompositions.hpp"
 #include "prune/consensus/constants.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
 

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <tuple>
 
-#include <Eigen/Cholesky>
-
+#include "matrices/decompositions.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
 #include "prune/consensus/estimate/map_volume.hpp"
 #include "prune/consensus/estimate/step_spread.hpp"

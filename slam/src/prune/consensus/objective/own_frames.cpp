@@ -3,10 +3,8 @@
 #include <cmath>
 #include <vector>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-
 #include "graph/reversed.hpp"
+#include "matrices/decompositions.hpp"
 
 namespace isotherm::slam::detail {
 namespace {

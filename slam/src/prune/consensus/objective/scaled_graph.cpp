@@ -4,9 +4,8 @@
 #include <numeric>
 #include <vector>
 
-#include <Eigen/Cholesky>
-
 #include "graph/find_root.hpp"
+#include "matrices/decompositions.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
 
 namespace isotherm::slam::detail {

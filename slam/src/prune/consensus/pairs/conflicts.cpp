@@ -5,10 +5,10 @@
 #include <map>
 #include <utility>
 
-#include <Eigen/Cholesky>
 #include <nanoflann.hpp>
 
 #include "isotherm/base/parallel.hpp"
+#include "matrices/decompositions.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
