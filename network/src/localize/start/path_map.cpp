@@ -190,16 +190,15 @@ class Unfolding {
 
 }  // namespace
 
-Placement map_by_paths(const RangeProblem& problem, const std::vector<bool>& paths,
-                       const std::vector<bool>& trusted, Errors errors, double gate,
-                       const LocalizeOptions& options) {
-  const auto nodes = largest_part(problem, paths);
+Placement map_by_paths(const RangeProblem& problem, const std::vector<bool>& trusted, Errors errors,
+                       double gate, const LocalizeOptions& options) {
+  const auto nodes = largest_part(problem, trusted);
   if (static_cast<int>(nodes.size()) <= problem.dimension) {
     return place_nodes(problem, {}, Eigen::MatrixXd(problem.dimension, 0));
   }
   auto placement =
-      place_nodes(problem, nodes, scale(choose_pilots(problem, paths, nodes), problem.dimension));
-  match_size(problem, paths, placement);
+      place_nodes(problem, nodes, scale(choose_pilots(problem, trusted, nodes), problem.dimension));
+  match_size(problem, trusted, placement);
   unfold(problem, trusted, errors, gate, options, placement);
   return placement;
 }

@@ -10,16 +10,15 @@ namespace isotherm::network::detail {
 /// On which side ranges may be wrong.
 enum class Errors { any, too_long };
 
-/// A map of the largest part that the pairs of `paths` connect, in a frame of its own: shortest
-/// paths to pilot nodes and scaling (V. de Silva, J. Tenenbaum, "Sparse multidimensional scaling
-/// using landmark points", 2004), then springs, of all trusted pairs, whose loss narrows. Nodes
-/// nearer to each other than `absence.reach()` without a range repel each other, which opens folds.
-/// With `Errors::too_long` ranges shorter than the distance of their ends keep a wide loss.
-/// O(pilots * ranges * log nodes) and the factorisations of the springs. Nothing is placed if
-/// there are too few nodes. @throws Cancelled
-Placement map_by_paths(const RangeProblem& problem, const std::vector<bool>& paths,
-                       const std::vector<bool>& trusted, Errors errors, double gate,
-                       const LocalizeOptions& options);
+/// A map of the largest part that trusted pairs connect, in a frame of its own: shortest paths to
+/// pilot nodes and scaling (V. de Silva, J. Tenenbaum, "Sparse multidimensional scaling using
+/// landmark points", 2004), then springs, of the same pairs, whose loss narrows. Nodes nearer to
+/// each other than `absence.reach()` without a range repel each other, which opens folds. With
+/// `Errors::too_long` ranges shorter than the distance of their ends keep a wide loss. O(pilots *
+/// ranges * log nodes) and the factorisations of the springs. Nothing is placed if there are too
+/// few nodes. @throws Cancelled
+Placement map_by_paths(const RangeProblem& problem, const std::vector<bool>& trusted, Errors errors,
+                       double gate, const LocalizeOptions& options);
 
 /// The springs alone, on the placed nodes of any rough map.
 void unfold(const RangeProblem& problem, const std::vector<bool>& trusted, Errors errors,

@@ -73,7 +73,7 @@ struct Part {
 Placement draw(const Part& part, double gate, const LocalizeOptions& options) {
   auto free = part.problem;
   free.is_anchor.assign(free.nodes, false);
-  auto map = map_by_paths(free, part.trusted, part.trusted, Errors::any, gate, options);
+  auto map = map_by_paths(free, part.trusted, Errors::any, gate, options);
   if (!align_to_anchors(part.problem, part.placement, map)) return {};
   return map;
 }

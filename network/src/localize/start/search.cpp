@@ -36,35 +36,26 @@ class Search {
   }
 
   Placement run() {
-    if (options_.method != LocalizeMethod::robust) return started(trusted_, trusted_, Errors::any);
+    if (options_.method != LocalizeMethod::robust) return started(trusted_, Errors::any);
     const auto likely = likely_pairs(problem_, kLikely, options_);
-    has_false_ = std::find(likely.begin(), likely.end(), false) != likely.end();
-    const auto supported = has_false_ ? supported_pairs(problem_, likely) : likely;
-    consider(started(supported, supported, Errors::any));
+    const bool has_false = std::find(likely.begin(), likely.end(), false) != likely.end();
+    consider(started(has_false ? supported_pairs(problem_, likely) : likely, Errors::any));
     unfold_best();
-    if (!is_enough()) try_other_starts(supported);
+    if (!is_enough()) try_other_starts();
     for (int round = 0; round < kMostRounds && consider_redrawn(); ++round) unfold_best();
     return std::move(best_);
   }
 
  private:
-  Placement started(const std::vector<bool>& paths, const std::vector<bool>& pairs, Errors errors) {
+  Placement started(const std::vector<bool>& pairs, Errors errors) {
     errors_ = errors;
-    return in_frame(map_by_paths(free_, paths, pairs, errors, gate_, options_));
+    return in_frame(map_by_paths(free_, pairs, errors, gate_, options_));
   }
 
-  void try_other_starts(const std::vector<bool>& supported) {
-    if (has_false_) consider(started(supported, supported, Errors::too_long));
-    consider(started(trusted_, trusted_, Errors::too_long));
+  void try_other_starts() {
+    consider(started(trusted_, Errors::too_long));
     unfold_best();
-    for (int round = 0; round < kMostRounds && try_without_contradicted(); ++round) unfold_best();
     for (int round = 0; round < kMostRounds && consider(heated(best_)); ++round) unfold_best();
-  }
-
-  bool try_without_contradicted() {
-    const auto pairs = uncontradicted();
-    const auto paths = has_false_ ? supported_pairs(problem_, pairs) : pairs;
-    return consider(started(paths, pairs, best_errors_));
   }
 
   Placement in_frame(Placement map) const {
@@ -81,15 +72,6 @@ class Search {
   Placement heated(Placement map) const {
     unfold(problem_, trusted_, best_errors_, gate_, options_, map);
     return map;
-  }
-
-  std::vector<bool> uncontradicted() const {
-    auto pairs = trusted_;
-    for (std::size_t p = 0; p < pairs.size(); ++p) {
-      const auto& pair = problem_.pairs[p];
-      if (is_placed(best_, pair) && squared_deviation(best_, pair) > 4.0 * gate_) pairs[p] = false;
-    }
-    return pairs;
   }
 
   // Whether a map that is settled makes the best one better.
@@ -183,7 +165,6 @@ class Search {
   Placement best_;
   Placement redrawn_;  // the best map when regions were drawn last
   double worth_ = -std::numeric_limits<double>::infinity();
-  bool has_false_ = false;            // whether heat finds any false pair
   double unfolded_ = worth_;          // when folds were opened last
   Errors errors_ = Errors::any;       // of the last start
   Errors best_errors_ = Errors::any;  // of that of the best map
