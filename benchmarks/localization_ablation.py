@@ -57,8 +57,6 @@ CONSTANTS = [
     Constant("kBroken", "0.5", "costs of a range that break a pair", (0.25, 1)),
     Constant("kMostBroken", "10", "the same, that a fold may cost at first", (3, 30)),
     Constant("kAlike", "0.8", "part of the nodes that parts share which are alike", (0.6, 0.95)),
-    Constant("kOneRange", "0.7", "of what makes a place best, what one range may bring", (0.4, 1)),
-    Constant("kBetterElsewhere", "0.5", "the same, of another place", (0.1, 1)),
 ]
 
 

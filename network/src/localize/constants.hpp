@@ -92,12 +92,4 @@ inline constexpr double kMostBroken = 10.0;
 /// Part of the nodes of either part that are in both where parts are alike.
 inline constexpr double kAlike = 0.8;
 
-// Who has a place.
-
-/// Of what makes a place clearly the best, what one range may bring: none decides alone.
-inline constexpr double kOneRange = 0.7;
-
-/// The same, what another place may be better by: the node is not where it belongs.
-inline constexpr double kBetterElsewhere = 0.5;
-
 }  // namespace isotherm::network::detail

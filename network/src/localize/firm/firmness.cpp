@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "isotherm/base/parallel.hpp"
@@ -16,8 +15,6 @@ namespace isotherm::network::detail {
 namespace {
 
 using Nodes = std::vector<Index>;
-
-constexpr double kAnyCost = std::numeric_limits<double>::infinity();
 
 class Firmness {
  public:
@@ -43,20 +40,10 @@ class Firmness {
       changed = release_folding_parts(lines);
       lines = within_steps(problem_, std::exchange(released_, {}), kRegionSteps, trusted_);
     } while (std::find(changed.begin(), changed.end(), true) != changed.end());
-    return with_those_beside();
+    return firm_.placed;
   }
 
  private:
-  // Besides, what a single range puts in one place among these, but not what hangs on that: range
-  // by range a part would creep over a hinge.
-  std::vector<bool> with_those_beside() const {
-    auto firm = firm_.placed;
-    for (Index v = 0; v < problem_.nodes; ++v) {
-      if (placed_[v] && !firm[v]) firm[v] = has_one_place(v, kAnyCost);
-    }
-    return firm;
-  }
-
   // Takes out what has a second place among the firm ones, of the nodes whose surroundings have
   // `changed` and then of those that hung on them.
   void release_nodes(std::vector<bool> changed) {
@@ -67,9 +54,8 @@ class Firmness {
       }
       std::vector<char> has_one(asked.size(), 0);
       parallel_for(static_cast<std::int64_t>(asked.size()), options_.threads, options_.progress,
-                   "determinacy", [&](std::int64_t k) {
-                     has_one[k] = has_one_place(asked[k], kOneRange * clear_) ? 1 : 0;
-                   });
+                   "determinacy",
+                   [&](std::int64_t k) { has_one[k] = has_one_place(asked[k]) ? 1 : 0; });
       changed.assign(problem_.nodes, false);
       bool any = false;
       for (std::size_t k = 0; k < asked.size(); ++k) {
@@ -106,19 +92,17 @@ class Firmness {
     return changed;
   }
 
-  // Whether the node's place among the firm ones is clearly the best, if a range brings at most so
-  // much.
-  bool has_one_place(Index node, double most) const {
+  // Whether the node's place among the firm ones is clearly the best.
+  bool has_one_place(Index node) const {
     auto around = star(problem_, evidence_, firm_, node, trusted_);
     if (static_cast<int>(around.arms.size()) <= problem_.dimension) return false;
     const Point place = firm_.positions.col(node);
     // It, or these, lie on the wrong side of a fold.
     if (crowd_.absence_cost(node, place, placed_) > clear_) return false;
-    for (auto& arm : around.arms) arm.cost.anything = std::min(arm.cost.anything, most);
     crowd_.add_strangers(around, node, firm_.placed);
     const auto found = multilaterate(around);
     if (!found || found->margin() < clear_) return false;
-    return around.cost(place) - found->cost < kBetterElsewhere * clear_;
+    return around.cost(place) - found->cost < clear_;
   }
 
   const RangeProblem& problem_;
