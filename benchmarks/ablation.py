@@ -38,7 +38,6 @@ CONSTANTS = [
     Constant("kFewLoops", "5", "loops of which none is pruned if there are fewer", (0, 20)),
     Constant("kLeastSample", "200", "loops that a sample holds at least", (20, 1e9)),
     Constant("kBetter", "1", "nats by which a move must be better", (0.1, 3)),
-    Constant("kPatience", "8", "moves that may find nothing better", (3, 20)),
     Constant("kMoreTelling", "2", "times as many loops tell scales anew", (1, 1000)),
     Constant("kMostExpectedFalse", "0.5", "loops of a batch that may be expected false", (0.1, 5)),
     Constant("kBatchGrowth", "10", "times as many loops as before in a batch", (3, 100)),

@@ -49,10 +49,6 @@ inline constexpr std::size_t kLeastSample = 200;
 /// mention" (Kass and Raftery, Bayes Factors, 1995, table of section 3.2).
 inline constexpr double kBetter = 1.0;
 
-/// Moves in a row that may find nothing better, or nothing that would lead in as many to the
-/// highest peak of earlier climbs.
-inline constexpr int kPatience = 8;
-
 /// Times as many loops as at the last lesson have more to tell of how accurate they are.
 inline constexpr std::size_t kMoreTelling = 2;
 

@@ -14,6 +14,8 @@
 namespace isotherm::slam::detail {
 namespace {
 
+constexpr int kMostVain = 8;  // moves in a row that find nothing better
+
 bool is_part(const std::vector<bool>& part, const std::vector<bool>& whole) {
   for (std::size_t k = 0; k < part.size(); ++k) {
     if (part[k] && !whole[k]) return false;
@@ -81,7 +83,7 @@ template <class Pose>
 Explanation<Pose> Climb<Pose>::resume(Standpoint<Pose> standpoint) {
   stand_on(std::move(standpoint));
   int vain = 0;
-  for (int round = 0; round < options_.max_rounds && vain < kPatience; ++round) {
+  for (int round = 0; round < options_.max_rounds && vain < kMostVain; ++round) {
     tell_progress();
     const double highest = best_.evidence;
     if (!shift() && !learn_more_than(0.0)) break;
@@ -186,13 +188,6 @@ bool Climb<Pose>::outdoes(double evidence) {
 }
 
 template <class Pose>
-double Climb<Pose>::summit() const {
-  double summit = -std::numeric_limits<double>::infinity();
-  for (const auto& peak : peaks_) summit = std::max(summit, peak.evidence);
-  return summit;
-}
-
-template <class Pose>
 Explanation<Pose> Climb<Pose>::none_at(const CovarianceScale& scale) const {
   const std::size_t loops = objective_.stated().reduced.loops.size();
   Explanation<Pose> none{.accepted = std::vector<bool>(loops), .scale = scale};
@@ -240,10 +235,9 @@ const Explanation<Pose>* Climb<Pose>::grow() {
         had >= kMoreTelling * learnt_from_ && learn_more_than(gain_of_dropping(misfits()));
     if (const auto* known = had > 0 ? peak_ahead(learnt) : nullptr) return known;
     if (!learnt && !move()) return nullptr;
-    const double enough = std::max(summit() - best_.evidence, 0.0) / kPatience;
     const bool grows = 2 * now_.accepted_count() >= 3 * had;
-    vain = grows || best_.evidence - before > enough ? 0 : vain + 1;
-    if (vain == kPatience) return nullptr;
+    vain = grows || best_.evidence > before + kBetter ? 0 : vain + 1;
+    if (vain == kMostVain) return nullptr;
   }
   settled_ = false;
   return nullptr;

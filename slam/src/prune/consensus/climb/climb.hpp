@@ -112,7 +112,6 @@ class Climb {
   const Explanation<Pose>& lead_to(const Explanation<Pose>& peak);
   bool is_here(const Passed& passed) const;
   bool outdoes(double evidence);
-  double summit() const;
   const Explanation<Pose>* grow();
   bool move();
   bool shift();
