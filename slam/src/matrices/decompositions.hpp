@@ -8,8 +8,6 @@
 // itself takes seconds to do so.
 extern template class Eigen::LLT<Eigen::Matrix<double, 3, 3>>;
 extern template class Eigen::LLT<Eigen::Matrix<double, 6, 6>>;
-extern template class Eigen::LDLT<Eigen::Matrix<double, 3, 3>>;
-extern template class Eigen::LDLT<Eigen::Matrix<double, 6, 6>>;
 extern template class Eigen::PartialPivLU<Eigen::Matrix<double, 3, 3>>;
 extern template class Eigen::PartialPivLU<Eigen::Matrix<double, 6, 6>>;
 extern template class Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 3, 3>>;
