@@ -72,7 +72,7 @@ inline constexpr double kRepulsionWidth = 6.0;
 /// Widths of a loss beyond which a range weighs less than .4 % and is left out.
 inline constexpr double kFarOutside = 4.0;
 
-/// Part of the trusted pairs that may contradict a map before other starts are tried.
+/// Part of the trusted pairs that may contradict a map before the other start is tried.
 inline constexpr double kHardlyAny = 0.005;
 
 /// Ranges from the middle of a region that is drawn anew to its outermost nodes, and from what has

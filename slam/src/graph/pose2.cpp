@@ -1,8 +1,9 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/LU>
+
 #include "isotherm/slam/graph/pose.hpp"
-#include "matrices/decompositions.hpp"
 
 namespace isotherm::slam {
 namespace {

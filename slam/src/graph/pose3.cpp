@@ -1,7 +1,8 @@
 #include <cmath>
 
+#include <Eigen/LU>
+
 #include "isotherm/slam/graph/pose.hpp"
-#include "matrices/decompositions.hpp"
 
 namespace isotherm::slam {
 namespace {

@@ -4,10 +4,10 @@
 #include <limits>
 #include <numbers>
 
+#include <Eigen/LU>
 #include <Eigen/SVD>
 
 #include "isotherm/base/text_writer.hpp"
-#include "matrices/decompositions.hpp"
 
 namespace isotherm::slam::detail {
 namespace {

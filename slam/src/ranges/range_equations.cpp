@@ -5,9 +5,10 @@
 #include <numbers>
 #include <utility>
 
+#include <Eigen/Cholesky>
+
 #include "isotherm/spectral/sparse/block_covariance.hpp"
 #include "isotherm/spectral/sparse/damped_step.hpp"
-#include "matrices/decompositions.hpp"
 
 namespace isotherm::slam::detail {
 namespace {

@@ -41,7 +41,7 @@ class Search {
     const bool has_false = std::find(likely.begin(), likely.end(), false) != likely.end();
     consider(started(has_false ? supported_pairs(problem_, likely) : likely, Errors::any));
     unfold_best();
-    if (!is_enough()) try_other_starts();
+    if (!is_enough()) try_the_other_start();
     for (int round = 0; round < kMostRounds && consider_redrawn(); ++round) unfold_best();
     return std::move(best_);
   }
@@ -52,7 +52,7 @@ class Search {
     return in_frame(map_by_paths(free_, pairs, errors, gate_, options_));
   }
 
-  void try_other_starts() {
+  void try_the_other_start() {
     consider(started(trusted_, Errors::too_long));
     unfold_best();
     for (int round = 0; round < kMostRounds && consider(heated(best_)); ++round) unfold_best();

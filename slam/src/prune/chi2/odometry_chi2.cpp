@@ -1,8 +1,9 @@
 #include "isotherm/slam/prune/odometry_chi2.hpp"
 
+#include <Eigen/Cholesky>
+
 #include "isotherm/slam/graph/information.hpp"
 #include "isotherm/slam/graph/odometry.hpp"
-#include "matrices/decompositions.hpp"
 
 namespace isotherm::slam {
 namespace {

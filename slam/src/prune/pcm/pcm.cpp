@@ -2,13 +2,14 @@
 
 #include <algorithm>
 
+#include <Eigen/Cholesky>
+
 #include "graph/candidate_verdicts.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/statistics.hpp"
 #include "isotherm/slam/graph/information.hpp"
 #include "isotherm/slam/graph/odometry.hpp"
 #include "isotherm/slam/prune/odometry_chi2.hpp"
-#include "matrices/decompositions.hpp"
 #include "optimize/minimize.hpp"
 #include "prune/pcm/max_clique.hpp"
 

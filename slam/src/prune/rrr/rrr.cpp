@@ -4,13 +4,14 @@
 #include <iterator>
 #include <numeric>
 
+#include <Eigen/Cholesky>
+
 #include "graph/candidate_verdicts.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/statistics.hpp"
 #include "isotherm/slam/graph/information.hpp"
 #include "isotherm/slam/graph/odometry.hpp"
 #include "isotherm/slam/optimize/initialize.hpp"
-#include "matrices/decompositions.hpp"
 #include "optimize/robust_minimize.hpp"
 
 namespace isotherm::slam {

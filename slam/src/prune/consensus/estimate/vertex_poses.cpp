@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "matrices/decompositions.hpp"
+#include <Eigen/Cholesky>
 
 namespace isotherm::slam::detail {
 namespace {
