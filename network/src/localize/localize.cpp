@@ -38,7 +38,7 @@ class Localization {
 
   LocalizeResult run() {
     trusted_ = detail::likely_pairs(problem_, options_.heat_chance, options_);
-    placement_ = detail::search_map(problem_, anchors_, trusted_, gate_, options_);
+    placement_ = detail::search_map(task(), anchors_);
     if (options_.method == LocalizeMethod::robust) {
       use_ = detail::ranges_within(problem_, placement_, gate_);
       decide();
@@ -54,6 +54,8 @@ class Localization {
   }
 
  private:
+  detail::MapTask task() const { return {problem_, trusted_, gate_, options_}; }
+
   std::vector<bool> between_placed() const {
     return detail::ranges_within(problem_, placement_, std::numeric_limits<double>::infinity());
   }
@@ -168,7 +170,7 @@ class Localization {
   bool drop_undetermined() {
     auto statuses = detail::determinacy(problem_, use_, placement_);
     const auto known = covariances();
-    const auto firm = detail::firm_nodes(problem_, trusted_, gate_, options_, placement_);
+    const auto firm = detail::firm_nodes(task(), placement_);
     bool any = false;
     for (Index v = 0; v < problem_.nodes; ++v) {
       if (!placement_.placed[v] || problem_.is_anchor[v]) continue;

@@ -112,12 +112,14 @@ TEST(Evidence, KnowsTheKindsOfRange) {
   auto simulated =
       simulate_network({.nodes = 300, .degree = 15.0, .biased_fraction = 0.2, .seed = 5});
   const auto biased = make_problem(simulated.network);
-  const auto long_ones = learn_evidence(biased, all_of(biased), at(biased, simulated.truth));
+  const auto long_ones =
+      learn_evidence({biased, all_of(biased), kGate, {}}, at(biased, simulated.truth));
   EXPECT_NEAR(long_ones.model.share[kTooLong], 0.2, 0.05);
 
   simulated = simulate_network({.nodes = 300, .degree = 15.0, .false_fraction = 0.2, .seed = 5});
   const auto other = make_problem(simulated.network);
-  const auto false_ones = learn_evidence(other, all_of(other), at(other, simulated.truth));
+  const auto false_ones =
+      learn_evidence({other, all_of(other), kGate, {}}, at(other, simulated.truth));
   EXPECT_NEAR(false_ones.model.share[kAnything], 0.2, 0.05);
   EXPECT_LT(false_ones.model.share[kTooLong], 0.05);
 }
@@ -127,7 +129,9 @@ TEST(Worth, IsHighestAtTheTruth) {
       simulate_network({.nodes = 200, .degree = 15.0, .false_fraction = 0.2, .seed = 7});
   const auto problem = make_problem(simulated.network);
   const auto trusted = all_of(problem);
-  const double best = worth(problem, trusted, at(problem, simulated.truth));
+  const LocalizeOptions options;
+  const MapTask task{problem, trusted, kGate, options};
+  const double best = worth(task, at(problem, simulated.truth));
   auto moved = at(problem, simulated.truth);
   Index most = 0;  // the node with the most ranges
   for (Index v = 0; v < problem.nodes; ++v) {
@@ -135,13 +139,13 @@ TEST(Worth, IsHighestAtTheTruth) {
       most = v;
   }
   moved.positions.col(most).x() += simulated.radius;
-  EXPECT_LT(worth(problem, trusted, moved), best);
+  EXPECT_LT(worth(task, moved), best);
   moved.placed[most] = false;
-  EXPECT_LT(worth(problem, trusted, moved), best);
+  EXPECT_LT(worth(task, moved), best);
   // Rigid motions leave it as it is, but for the box around the nodes.
   auto turned = at(problem, simulated.truth);
   turned.positions = (turned.positions.colwise() + Eigen::Vector2d(3.0, -1.0)).eval();
-  EXPECT_NEAR(worth(problem, trusted, turned), best, 1e-6 * std::abs(best));
+  EXPECT_NEAR(worth(task, turned), best, 1e-6 * std::abs(best));
 }
 
 TEST(Crowd, CostsWhatAllPairsCost) {

@@ -20,7 +20,7 @@ std::vector<bool> firm_of(int of_first, int of_second) {
   pairs.emplace_back(8, 9);
   const auto problem = make_problem(exact_network(truth, pairs, {0, 1, 2, 3, 4, 5, 6, 7}));
   const Placement placement{truth, std::vector<bool>(10, true)};
-  const auto firm = firm_nodes(problem, all_of(problem), kGate, {}, placement);
+  const auto firm = firm_nodes({problem, all_of(problem), kGate, {}}, placement);
   return {firm[8], firm[9]};
 }
 
@@ -36,7 +36,7 @@ TEST(FirmNodes, AreNotHeldByWhatHasTwoPlaces) {
 
 TEST(FirmNodes, OfNothingAreNone) {
   const auto none = make_problem(exact_network(Eigen::MatrixXd(2, 0), {}));
-  EXPECT_TRUE(firm_nodes(none, {}, kGate, {}, {Eigen::MatrixXd(2, 0), {}}).empty());
+  EXPECT_TRUE(firm_nodes({none, {}, kGate, {}}, {Eigen::MatrixXd(2, 0), {}}).empty());
 }
 
 }  // namespace

@@ -43,9 +43,10 @@ struct Map {
         trusted(problem.pairs.size(), true),
         placement{hinged_points(bend), std::vector<bool>(13, true)} {}
 
+  MapTask task() const { return {problem, trusted, kGate, options}; }
+
   std::vector<Fold> folds() const {
-    return find_folds(problem, trusted, kNoAbsence, {.threads = 1}, placement,
-                      std::vector<bool>(problem.nodes, true));
+    return find_folds(task(), kNoAbsence, placement, std::vector<bool>(problem.nodes, true));
   }
 
   static const Fold* fold_of(const std::vector<Fold>& folds, const std::vector<Index>& part) {
@@ -56,9 +57,10 @@ struct Map {
 
   MoveOutcome try_it(const Fold& fold) const {
     const Crowd crowd(problem, placement, kNoAbsence.absence);
-    return try_move(problem, trusted, kGate, kNoAbsence, crowd, placement, fold.move(placement));
+    return try_move(task(), kNoAbsence, crowd, placement, fold.move(placement));
   }
 
+  LocalizeOptions options = {.threads = 1};
   RangeProblem problem;
   std::vector<bool> trusted;
   Placement placement;
@@ -130,17 +132,18 @@ TEST(Folds, NoneInSpaceOrOfNothing) {
   const auto problem = make_problem(exact_network(corners, all_pairs({0, 1, 2})));
   const Placement placement{corners, std::vector<bool>(3, true)};
   EXPECT_TRUE(
-      find_folds(problem, {true, true, true}, {}, {}, placement, {true, true, true}).empty());
+      find_folds({problem, {true, true, true}, kGate, {}}, {}, placement, {true, true, true})
+          .empty());
 }
 
 TEST(OpenFolds, MirrorsWhatFitsBetterThatWay) {
   Map map(hinged_network(0.0, {{0, 8}, {1, 9}, {2, 10}}));
   map.placement.positions.row(1).tail(5) *= -1.0;
-  EXPECT_TRUE(open_folds(map.problem, map.trusted, kGate, {.threads = 1}, map.placement));
+  EXPECT_TRUE(open_folds(map.task(), map.placement));
   double misfit = 0.0;
   for (const auto& pair : map.problem.pairs) misfit += squared_deviation(map.placement, pair);
   EXPECT_LT(misfit, 1e-3);
-  EXPECT_FALSE(open_folds(map.problem, map.trusted, kGate, {.threads = 1}, map.placement));
+  EXPECT_FALSE(open_folds(map.task(), map.placement));
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ struct IslandMap {
   }
 
   std::vector<PartMove> moves() const {
-    return loose_parts(problem, all_of(problem), kGate, kFewFalse, {.threads = 1}, placement);
+    return loose_parts({problem, all_of(problem), kGate, {.threads = 1}}, kFewFalse, placement);
   }
 
   double off() const { return (placement.positions - island_places()).colwise().norm().maxCoeff(); }
@@ -77,7 +77,8 @@ TEST(LooseParts, AreBroughtHome) {
   for (const bool mirrored : {false, true}) {
     IslandMap map(island(kFive));
     map.adrift(mirrored);
-    EXPECT_TRUE(open_folds(map.problem, all_of(map.problem), kGate, {.threads = 1}, map.placement));
+    EXPECT_TRUE(
+        open_folds({map.problem, all_of(map.problem), kGate, {.threads = 1}}, map.placement));
     EXPECT_LT(map.off(), 1e-3);
   }
 }
@@ -100,7 +101,7 @@ TEST(LooseParts, NoneInSpaceOrOfNothing) {
   const Eigen::MatrixXd corners = Eigen::MatrixXd::Identity(3, 3);
   const auto problem = make_problem(exact_network(corners, all_pairs({0, 1, 2})));
   const Placement together{Eigen::MatrixXd::Zero(3, 3), std::vector<bool>(3, true)};
-  EXPECT_TRUE(loose_parts(problem, all_of(problem), kGate, kFewFalse, {}, together).empty());
+  EXPECT_TRUE(loose_parts({problem, all_of(problem), kGate, {}}, kFewFalse, together).empty());
   IslandMap map(island(kFive));
   map.placement.placed.assign(11, false);
   EXPECT_TRUE(map.moves().empty());

@@ -33,7 +33,7 @@ TEST(PathMap, IsTheNetworkUpToAnIsometry) {
                                              .noise = 0.02,
                                              .seed = 3});
     const auto problem = make_problem(simulated.network);
-    const auto map = map_by_paths(problem, all_of(problem), Errors::any, kGate, {});
+    const auto map = map_by_paths({problem, all_of(problem), kGate, {}}, Errors::any);
     EXPECT_GT(share_near(map, simulated.truth, 0.3 * simulated.radius), 0.9) << dimension;
   }
 }
@@ -46,8 +46,7 @@ TEST(PathMap, StandsRangesThatAreTooLong) {
                                            .biased_fraction = 0.2,
                                            .seed = 1});
   const auto problem = make_problem(simulated.network);
-  const auto trusted = all_of(problem);
-  const auto map = map_by_paths(problem, trusted, Errors::too_long, kGate, {});
+  const auto map = map_by_paths({problem, all_of(problem), kGate, {}}, Errors::too_long);
   EXPECT_GT(share_near(map, simulated.truth, 0.5 * simulated.radius), 0.9);
 }
 
@@ -56,7 +55,6 @@ TEST(Unfold, DrawsATornMapTogether) {
   const auto simulated =
       simulate_network({.nodes = 900, .anchors = 0, .degree = 14.0, .noise = 0.02, .seed = 4});
   const auto problem = make_problem(simulated.network);
-  const auto trusted = all_of(problem);
   const Eigen::Rotation2Dd turn(0.12);
   const Eigen::Vector2d hinge(0.6, 1.0);
   Placement map{simulated.truth, std::vector<bool>(900, true)};
@@ -66,7 +64,7 @@ TEST(Unfold, DrawsATornMapTogether) {
   }
   const double near = 0.3 * simulated.radius;
   EXPECT_LT(share_near(map, simulated.truth, near), 0.9);
-  unfold(problem, trusted, Errors::any, kGate, {}, map);
+  unfold({problem, all_of(problem), kGate, {}}, Errors::any, map);
   EXPECT_GT(share_near(map, simulated.truth, near), 0.98);
 }
 
@@ -82,7 +80,7 @@ TEST(PathMap, PlacesTheLargestPart) {
   range.distance = 1.0;
   network.ranges.push_back(range);
   const auto problem = make_problem(network);
-  const auto map = map_by_paths(problem, all_of(problem), Errors::any, kGate, {});
+  const auto map = map_by_paths({problem, all_of(problem), kGate, {}}, Errors::any);
   EXPECT_FALSE(map.placed[60]);
   EXPECT_FALSE(map.placed[61]);
   EXPECT_GE(placed_count(map), 55);
@@ -91,13 +89,13 @@ TEST(PathMap, PlacesTheLargestPart) {
 TEST(PathMap, OfTooFewNodesIsEmpty) {
   const Eigen::MatrixXd points = Eigen::MatrixXd::Random(2, 2);
   const auto pair = make_problem(exact_network(points, all_pairs({0, 1})));
-  EXPECT_EQ(placed_count(map_by_paths(pair, all_of(pair), Errors::any, kGate, {})), 0);
+  EXPECT_EQ(placed_count(map_by_paths({pair, all_of(pair), kGate, {}}, Errors::any)), 0);
   const auto none = make_problem(exact_network(Eigen::MatrixXd(2, 0), {}));
-  EXPECT_EQ(placed_count(map_by_paths(none, {}, Errors::any, kGate, {})), 0);
+  EXPECT_EQ(placed_count(map_by_paths({none, {}, kGate, {}}, Errors::any)), 0);
   // All in one place.
   const Eigen::MatrixXd heap = Eigen::MatrixXd::Zero(2, 6);
   const auto same = make_problem(exact_network(heap, all_pairs({0, 1, 2, 3, 4, 5})));
-  EXPECT_TRUE(map_by_paths(same, all_of(same), Errors::any, kGate, {}).positions.allFinite());
+  EXPECT_TRUE(map_by_paths({same, all_of(same), kGate, {}}, Errors::any).positions.allFinite());
 }
 
 }  // namespace

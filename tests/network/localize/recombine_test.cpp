@@ -16,6 +16,8 @@ struct Known {
   SimulatedNetwork simulated = simulate_network({.nodes = 300, .degree = 15.0, .seed = 3});
   RangeProblem problem = make_problem(simulated.network);
   std::vector<bool> trusted = all_of(problem);
+  LocalizeOptions options = {};
+  MapTask task{problem, trusted, kGate, options};
   Placement truth{simulated.truth, std::vector<bool>(problem.nodes, true)};
 
   std::vector<Index> near(const Eigen::Vector2d& place, double radii) const {
@@ -49,14 +51,13 @@ TEST(DifferingParts, AreConnectedNodesThatAreElsewhere) {
   const auto there = known.near({0.75, 0.75}, 1.0);
   auto both = here;
   both.insert(both.end(), there.begin(), there.end());
-  const auto moves =
-      differing_parts(known.problem, known.trusted, known.truth, known.shifted(both));
+  const auto moves = differing_parts(known.task, known.truth, known.shifted(both));
   ASSERT_EQ(moves.size(), 2U);
   for (const auto& part : {here, there}) {
     const bool found = moves[0].part == part || moves[1].part == part;
     EXPECT_TRUE(found);
   }
-  EXPECT_TRUE(differing_parts(known.problem, known.trusted, known.truth, known.truth).empty());
+  EXPECT_TRUE(differing_parts(known.task, known.truth, known.truth).empty());
 }
 
 TEST(Recombine, TakesFromEachMapWhatIsLikelierThere) {
@@ -64,19 +65,19 @@ TEST(Recombine, TakesFromEachMapWhatIsLikelierThere) {
   const auto here = known.near({0.25, 0.25}, 1.0);
   const auto there = known.near({0.75, 0.75}, 1.0);
   auto map = known.shifted(here);
-  EXPECT_TRUE(recombine(known.problem, known.trusted, kGate, {}, known.shifted(there), map));
+  EXPECT_TRUE(recombine(known.task, known.shifted(there), map));
   EXPECT_LT(known.off(map, here), 0.2);
   EXPECT_LT(known.off(map, there), 0.2);
-  EXPECT_FALSE(recombine(known.problem, known.trusted, kGate, {}, known.shifted(there), map));
+  EXPECT_FALSE(recombine(known.task, known.shifted(there), map));
 }
 
 TEST(Polish, NeverMakesAMapWorse) {
   const Known known;
   for (const double radii : {0.5, 1.0, 2.0}) {
     auto map = known.shifted(known.near({0.5, 0.5}, radii));
-    const double before = worth(known.problem, known.trusted, map);
-    polish(known.problem, known.trusted, kGate, {}, map);
-    EXPECT_GE(worth(known.problem, known.trusted, map), before);
+    const double before = worth(known.task, map);
+    polish(known.task, map);
+    EXPECT_GE(worth(known.task, map), before);
   }
 }
 

@@ -16,12 +16,13 @@ void expect_no_less_than_the_truth(const NetworkOptions& options) {
   const auto simulated = simulate_network(options);
   const auto problem = make_problem(simulated.network);
   const auto trusted = likely_pairs(problem, 0.1, {});
+  const LocalizeOptions defaults;
+  const MapTask task{problem, trusted, kGate, defaults};
   Placement truth{simulated.truth, std::vector<bool>(problem.nodes, true)};
-  refine_robustly(problem, trusted, kGate, {}, truth);
-  const auto found =
-      search_map(problem, anchors_only(simulated.network, problem), trusted, kGate, {});
-  const double best = worth(problem, trusted, truth);
-  EXPECT_GE(worth(problem, trusted, found), best - 0.01 * std::abs(best));
+  refine_robustly(task, truth);
+  const auto found = search_map(task, anchors_only(simulated.network, problem));
+  const double best = worth(task, truth);
+  EXPECT_GE(worth(task, found), best - 0.01 * std::abs(best));
 }
 
 TEST(SearchMap, IsWorthAsMuchAsTheTruth) {
@@ -40,7 +41,7 @@ TEST(SearchMap, IsNotMisledByOneFalseRangeFromEndToEnd) {
   const auto problem = make_problem(simulated.network);
   const auto trusted = likely_pairs(problem, 0.1, {});
   const auto found =
-      search_map(problem, anchors_only(simulated.network, problem), trusted, kGate, {});
+      search_map({problem, trusted, kGate, {}}, anchors_only(simulated.network, problem));
   Index far = 0;
   for (Index v = 0; v < problem.nodes; ++v) {
     const double off = (found.positions.col(v) - simulated.truth.col(v)).norm();
@@ -67,7 +68,7 @@ TEST(SupportedPairs, HaveTwoNeighboursInCommon) {
 TEST(SearchMap, OfNothingIsNothing) {
   const auto network = exact_network(Eigen::MatrixXd(2, 0), {});
   const auto none = make_problem(network);
-  EXPECT_EQ(placed_count(search_map(none, anchors_only(network, none), {}, kGate, {})), 0);
+  EXPECT_EQ(placed_count(search_map({none, {}, kGate, {}}, anchors_only(network, none))), 0);
 }
 
 }  // namespace

@@ -20,20 +20,17 @@ double longest_range(const RangeProblem& problem) {
   return longest;
 }
 
-RangeMixture learn_kinds_of(const RangeProblem& problem, const std::vector<bool>& trusted,
-                            const Placement& placement) {
+RangeMixture learn_kinds_of(const MapTask& task, const Placement& placement) {
   constexpr int kRounds = 10;
-  auto model = first_mixture(problem, placement, true);
+  const double sigma = task.problem.typical_sigma;
+  auto model = first_mixture(task.problem, placement, true);
   for (int round = 0; round < kRounds; ++round) {
     RangeStatistics statistics;
-    for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
-      const auto& pair = problem.pairs[p];
-      if (!trusted[p] || !is_placed(placement, pair)) continue;
+    task.visit_pairs(placement, [&](const RangePair& pair) {
       const double error = -pair.sigma * deviation(placement, pair);
       statistics.add(range_moments(model, error, pair.sigma * pair.sigma));
-    }
-    learn_kinds(statistics, typical_excess(problem.typical_sigma, model.longest),
-                problem.typical_sigma, true, model);
+    });
+    learn_kinds(statistics, typical_excess(sigma, model.longest), sigma, true, model);
   }
   return model;
 }
@@ -77,26 +74,22 @@ RangeMixture first_mixture(const RangeProblem& problem, const Placement& placeme
   return model;
 }
 
-Evidence learn_evidence(const RangeProblem& problem, const std::vector<bool>& trusted,
-                        const Placement& placement) {
-  return {learn_kinds_of(problem, trusted, placement), Absence::learn(problem, trusted, placement)};
+Evidence learn_evidence(const MapTask& task, const Placement& placement) {
+  return {learn_kinds_of(task, placement), Absence::learn(task.problem, task.trusted, placement)};
 }
 
-double worth(const RangeProblem& problem, const std::vector<bool>& trusted,
-             const Placement& placement) {
-  return worth(problem, trusted, learn_evidence(problem, trusted, placement), placement);
+double worth(const MapTask& task, const Placement& placement) {
+  return worth(task, learn_evidence(task, placement), placement);
 }
 
-double worth(const RangeProblem& problem, const std::vector<bool>& trusted,
-             const Evidence& evidence, const Placement& placement) {
+double worth(const MapTask& task, const Evidence& evidence, const Placement& placement) {
+  const RangeProblem& problem = task.problem;
   const double correct = evidence.model.share[kCorrect] * longest_range(problem);
   double sum = -absence_cost(problem, evidence.absence, placement);
-  for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
-    const auto& pair = problem.pairs[p];
-    if (!trusted[p] || !is_placed(placement, pair)) continue;
+  task.visit_pairs(placement, [&](const RangePair& pair) {
     sum += 2.0 * std::log(correct * peak(pair.sigma));
     sum -= evidence.cost_of(pair.sigma)(deviation(placement, pair));
-  }
+  });
   const double coordinates = problem.dimension * placed_count(placement);
   return sum - coordinates * 2.0 * std::log(evidence.model.longest * peak(problem.typical_sigma));
 }

@@ -5,7 +5,7 @@
 
 #include "isotherm/network/localize/range_mixture.hpp"
 #include "localize/problem/absence.hpp"
-#include "localize/problem/range_problem.hpp"
+#include "localize/problem/map_task.hpp"
 
 /// The objective: twice the log of how likely a map is.
 namespace isotherm::network::detail {
@@ -40,17 +40,14 @@ RangeMixture first_mixture(const RangeProblem& problem, const Placement& placeme
 
 /// Shares of the kinds of range, and the mean excess, by expectation maximisation from the trusted
 /// pairs of placed nodes; absence from these nodes.
-Evidence learn_evidence(const RangeProblem& problem, const std::vector<bool>& trusted,
-                        const Placement& placement);
+Evidence learn_evidence(const MapTask& task, const Placement& placement);
 
 /// Twice the log of how much likelier the trusted pairs of placed nodes, and the absence of others,
 /// are on this map than ranges of any length up to the longest, times what is left of the prior of
 /// its coordinates, which may be anywhere on it, within the noise of a range.
-double worth(const RangeProblem& problem, const std::vector<bool>& trusted,
-             const Placement& placement);
+double worth(const MapTask& task, const Placement& placement);
 
 /// The same with the evidence learned from it already.
-double worth(const RangeProblem& problem, const std::vector<bool>& trusted,
-             const Evidence& evidence, const Placement& placement);
+double worth(const MapTask& task, const Evidence& evidence, const Placement& placement);
 
 }  // namespace isotherm::network::detail

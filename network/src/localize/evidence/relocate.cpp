@@ -2,7 +2,6 @@
 
 #include <optional>
 
-#include "isotherm/base/parallel.hpp"
 #include "localize/constants.hpp"
 #include "localize/evidence/crowd.hpp"
 #include "localize/evidence/star.hpp"
@@ -12,13 +11,12 @@ namespace {
 
 class Relocation {
  public:
-  Relocation(const RangeProblem& problem, double gate, const Evidence& evidence,
-             Placement& placement)
-      : problem_(problem),
-        gate_(gate),
+  Relocation(const MapTask& task, const Evidence& evidence, Placement& placement)
+      : problem_(task.problem),
+        gate_(task.gate),
         evidence_(evidence),
         placement_(placement),
-        crowd_(problem, placement, evidence.absence) {}
+        crowd_(task.problem, placement, evidence.absence) {}
 
   // Whether another place may be better.
   bool is_suspect(Index node) const {
@@ -66,17 +64,16 @@ class Relocation {
 
 }  // namespace
 
-std::vector<Index> relocate(const RangeProblem& problem, double gate, const Evidence& evidence,
-                            const LocalizeOptions& options, const std::vector<bool>& among,
-                            Placement& placement) {
-  Relocation relocation(problem, gate, evidence, placement);
+std::vector<Index> relocate(const MapTask& task, const Evidence& evidence,
+                            const std::vector<bool>& among, Placement& placement) {
+  Relocation relocation(task, evidence, placement);
   std::vector<Index> suspects;
-  for (Index v = 0; v < problem.nodes; ++v) {
+  for (Index v = 0; v < task.problem.nodes; ++v) {
     if (among[v] && relocation.is_suspect(v)) suspects.push_back(v);
   }
   std::vector<std::optional<Multilateration>> found(suspects.size());
-  parallel_for(static_cast<std::int64_t>(suspects.size()), options.threads, options.progress,
-               "multilateration", [&](std::int64_t k) { found[k] = relocation.look(suspects[k]); });
+  task.in_parallel(suspects.size(), "multilateration",
+                   [&](std::int64_t k) { found[k] = relocation.look(suspects[k]); });
   std::vector<Index> moved;
   for (std::size_t k = 0; k < suspects.size(); ++k) {
     if (found[k] && relocation.move(suspects[k], *found[k])) moved.push_back(suspects[k]);

@@ -144,6 +144,10 @@ std::vector<Candidate> candidates(const Star& star, double apart) {
 
 }  // namespace
 
+Arm arm_of(const RangePair& pair, const Evidence& evidence, const Point& end) {
+  return {end, pair.distance, pair.sigma, evidence.cost_of(pair.sigma)};
+}
+
 double Star::cost(const Point& place) const {
   double sum = 0.0;
   for (const auto& arm : arms) sum += arm.cost(arm.residual(place));
@@ -163,9 +167,7 @@ Star star(const RangeProblem& problem, const Evidence& evidence, const Placement
   Star result;
   for (const auto& [vertex, edge] : problem.pair_graph.neighbours(node)) {
     if (!placement.placed[vertex] || (!usable.empty() && !usable[edge])) continue;
-    const auto& pair = problem.pairs[edge];
-    result.arms.push_back(
-        {placement.positions.col(vertex), pair.distance, pair.sigma, evidence.cost_of(pair.sigma)});
+    result.arms.push_back(arm_of(problem.pairs[edge], evidence, placement.positions.col(vertex)));
   }
   return result;
 }

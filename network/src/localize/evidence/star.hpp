@@ -21,6 +21,9 @@ struct Arm {
   }
 };
 
+/// That of a pair whose other end is here.
+Arm arm_of(const RangePair& pair, const Evidence& evidence, const Point& end);
+
 /// What speaks for and against places of one node.
 struct Star {
   std::vector<Arm> arms;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "isotherm/base/parallel.hpp"
 #include "localize/constants.hpp"
 #include "localize/evidence/crowd.hpp"
 #include "localize/evidence/star.hpp"
@@ -18,15 +17,12 @@ using Nodes = std::vector<Index>;
 
 class Firmness {
  public:
-  Firmness(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
-           const LocalizeOptions& options, const Placement& placement)
-      : problem_(problem),
-        trusted_(trusted),
-        gate_(gate),
-        options_(options),
-        evidence_(learn_evidence(problem, trusted, placement)),
-        crowd_(problem, placement, evidence_.absence),
-        clear_(-2.0 * std::log(options.mirror_chance)),
+  Firmness(const MapTask& task, const Placement& placement)
+      : task_(task),
+        problem_(task.problem),
+        evidence_(learn_evidence(task, placement)),
+        crowd_(problem_, placement, evidence_.absence),
+        clear_(-2.0 * std::log(task.options.mirror_chance)),
         placed_(placement.placed),
         firm_(placement) {}
 
@@ -38,7 +34,7 @@ class Firmness {
     do {
       release_nodes(std::move(changed));
       changed = release_folding_parts(lines);
-      lines = within_steps(problem_, std::exchange(released_, {}), kRegionSteps, trusted_);
+      lines = within_steps(problem_, std::exchange(released_, {}), kRegionSteps, task_.trusted);
     } while (std::find(changed.begin(), changed.end(), true) != changed.end());
     return firm_.placed;
   }
@@ -53,9 +49,8 @@ class Firmness {
         if (changed[v] && firm_.placed[v] && !problem_.is_anchor[v]) asked.push_back(v);
       }
       std::vector<char> has_one(asked.size(), 0);
-      parallel_for(static_cast<std::int64_t>(asked.size()), options_.threads, options_.progress,
-                   "determinacy",
-                   [&](std::int64_t k) { has_one[k] = has_one_place(asked[k]) ? 1 : 0; });
+      task_.in_parallel(asked.size(), "determinacy",
+                        [&](std::int64_t k) { has_one[k] = has_one_place(asked[k]) ? 1 : 0; });
       changed.assign(problem_.nodes, false);
       bool any = false;
       for (std::size_t k = 0; k < asked.size(); ++k) {
@@ -80,12 +75,11 @@ class Firmness {
   std::vector<bool> release_folding_parts(const std::vector<bool>& lines) {
     std::vector<bool> changed(problem_.nodes, false);
     const Crowd crowd(problem_, firm_, evidence_.absence);
-    for (const auto& fold : find_folds(problem_, trusted_, evidence_, options_, firm_, lines)) {
+    for (const auto& fold : find_folds(task_, evidence_, firm_, lines)) {
       const bool is_whole =
           std::all_of(fold.part.begin(), fold.part.end(), [&](Index v) { return firm_.placed[v]; });
       if (!is_whole) continue;
-      const auto outcome =
-          try_move(problem_, trusted_, gate_, evidence_, crowd, firm_, fold.move(firm_));
+      const auto outcome = try_move(task_, evidence_, crowd, firm_, fold.move(firm_));
       if (outcome.extra >= clear_) continue;
       for (const Index v : outcome.moved) release(v, changed);
     }
@@ -94,7 +88,7 @@ class Firmness {
 
   // Whether the node's place among the firm ones is clearly the best.
   bool has_one_place(Index node) const {
-    auto around = star(problem_, evidence_, firm_, node, trusted_);
+    auto around = star(problem_, evidence_, firm_, node, task_.trusted);
     if (static_cast<int>(around.arms.size()) <= problem_.dimension) return false;
     const Point place = firm_.positions.col(node);
     // It, or these, lie on the wrong side of a fold.
@@ -105,10 +99,8 @@ class Firmness {
     return around.cost(place) - found->cost < clear_;
   }
 
+  const MapTask& task_;
   const RangeProblem& problem_;
-  const std::vector<bool>& trusted_;
-  double gate_;
-  const LocalizeOptions& options_;
   Evidence evidence_;
   Crowd crowd_;
   double clear_;
@@ -119,10 +111,8 @@ class Firmness {
 
 }  // namespace
 
-std::vector<bool> firm_nodes(const RangeProblem& problem, const std::vector<bool>& trusted,
-                             double gate, const LocalizeOptions& options,
-                             const Placement& placement) {
-  return Firmness(problem, trusted, gate, options, placement).run();
+std::vector<bool> firm_nodes(const MapTask& task, const Placement& placement) {
+  return Firmness(task, placement).run();
 }
 
 }  // namespace isotherm::network::detail

@@ -2,8 +2,7 @@
 
 #include <vector>
 
-#include "isotherm/network/localize/localize.hpp"
-#include "localize/problem/range_problem.hpp"
+#include "localize/problem/map_task.hpp"
 
 namespace isotherm::network::detail {
 
@@ -11,8 +10,6 @@ namespace isotherm::network::detail {
 /// among the others is less likely by the factor `options.mirror_chance`, and no part of them has a
 /// mirror image of which that is not true. Nodes that have another place are taken out, and then
 /// those that hung on them.
-std::vector<bool> firm_nodes(const RangeProblem& problem, const std::vector<bool>& trusted,
-                             double gate, const LocalizeOptions& options,
-                             const Placement& placement);
+std::vector<bool> firm_nodes(const MapTask& task, const Placement& placement);
 
 }  // namespace isotherm::network::detail

@@ -8,7 +8,6 @@
 #include <unordered_map>
 #include <utility>
 
-#include "isotherm/base/parallel.hpp"
 #include "localize/constants.hpp"
 
 namespace isotherm::network::detail {
@@ -35,22 +34,20 @@ struct PairTie {
 // The ties of all nodes, side by side: a search goes over them again and again.
 class PairTies {
  public:
-  PairTies(const RangeProblem& problem, const std::vector<bool>& trusted, const Evidence& evidence,
-           const Placement& placement) {
-    for (Index v = 0; v < problem.nodes; ++v) {
+  PairTies(const MapTask& task, const Evidence& evidence, const Placement& placement) {
+    for (Index v = 0; v < task.problem.nodes; ++v) {
       places_.emplace_back(placement.positions.col(v));
       first_.push_back(ties_.size());
       if (!placement.placed[v]) continue;
-      for (const auto& [vertex, edge] : problem.pair_graph.neighbours(v)) {
-        if (!trusted[edge] || !placement.placed[vertex]) continue;
-        const auto& pair = problem.pairs[edge];
+      task.visit_neighbours(placement, v, [&](Index vertex, Index edge) {
+        const auto& pair = task.problem.pairs[edge];
         const Eigen::Vector2d arm = placement.positions.col(v) - placement.positions.col(vertex);
         PairTie tie{vertex, pair.distance, pair.sigma, evidence.cost_of(pair.sigma),
                     arm.squaredNorm()};
         tie.cost = tie.cost_at(std::sqrt(tie.squared));
         limit(tie);
         ties_.push_back(tie);
-      }
+      });
     }
     first_.push_back(ties_.size());
   }
@@ -252,16 +249,16 @@ PartMove Fold::move(const Placement& placement) const {
   return result;
 }
 
-std::vector<Fold> find_folds(const RangeProblem& problem, const std::vector<bool>& trusted,
-                             const Evidence& evidence, const LocalizeOptions& options,
+std::vector<Fold> find_folds(const MapTask& task, const Evidence& evidence,
                              const Placement& placement, const std::vector<bool>& among) {
   constexpr Index kBlock = 64;  // nodes that share the memory of a search
+  const RangeProblem& problem = task.problem;
   if (problem.dimension != 2) return {};
   const Index blocks = (problem.nodes + kBlock - 1) / kBlock;
-  const PairTies ties(problem, trusted, evidence, placement);
+  const PairTies ties(task, evidence, placement);
   const double most_cost = kMostBroken * evidence.cost_of(problem.typical_sigma).anything;
   std::vector<std::vector<Fold>> found(blocks);
-  parallel_for(blocks, options.threads, options.progress, "folds", [&](std::int64_t block) {
+  task.in_parallel(blocks, "folds", [&](std::int64_t block) {
     AxisSearch search(problem, ties, most_cost, placement);
     const auto first = static_cast<Index>(block) * kBlock;
     for (Index v = first; v < std::min(problem.nodes, first + kBlock); ++v) {

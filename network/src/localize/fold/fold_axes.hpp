@@ -2,10 +2,9 @@
 
 #include <vector>
 
-#include "isotherm/network/localize/localize.hpp"
 #include "localize/evidence/evidence.hpp"
 #include "localize/fold/part_move.hpp"
-#include "localize/problem/range_problem.hpp"
+#include "localize/problem/map_task.hpp"
 
 namespace isotherm::network::detail {
 
@@ -30,8 +29,7 @@ struct Fold {
 /// same two; the cheapest fold first. Empty in space. Only lines that begin at a node in `among`
 /// count: those near what has changed since the last search. O(pairs * 200 * degree) at most, in
 /// parallel.
-std::vector<Fold> find_folds(const RangeProblem& problem, const std::vector<bool>& trusted,
-                             const Evidence& evidence, const LocalizeOptions& options,
+std::vector<Fold> find_folds(const MapTask& task, const Evidence& evidence,
                              const Placement& placement, const std::vector<bool>& among);
 
 }  // namespace isotherm::network::detail

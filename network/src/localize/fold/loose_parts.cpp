@@ -9,7 +9,6 @@
 
 #include <Eigen/Geometry>
 
-#include "isotherm/base/parallel.hpp"
 #include "localize/constants.hpp"
 #include "localize/evidence/star.hpp"
 
@@ -26,31 +25,27 @@ constexpr std::size_t kMotions = 3;
 // Grows rigid parts of a map, one after the other.
 class LooseSearch {
  public:
-  LooseSearch(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
-              const Placement& placement)
-      : problem_(problem),
-        trusted_(trusted),
+  LooseSearch(const MapTask& task, const Placement& placement)
+      : task_(task),
+        problem_(task.problem),
         placement_(placement),
-        most_(largest_part(problem, placement)),
-        seen_(problem.nodes, false) {
-    fits_.reserve(problem.pairs.size());
-    for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
-      const auto& pair = problem.pairs[p];
-      fits_.push_back(trusted[p] && is_placed(placement, pair) &&
-                      squared_deviation(placement, pair) <= gate);
+        most_(largest_part(problem_, placement)),
+        seen_(problem_.nodes, false) {
+    for (std::size_t p = 0; p < problem_.pairs.size(); ++p) {
+      const auto& pair = problem_.pairs[p];
+      fits_.push_back(task.trusted[p] && is_placed(placement, pair) && task.fits(placement, pair));
     }
   }
 
   std::vector<Nodes> parts() {
     std::vector<Nodes> found;
-    for (std::size_t p = 0; p < problem_.pairs.size(); ++p) {
-      const auto& pair = problem_.pairs[p];
-      if (!trusted_[p] || fits_[p] || !is_placed(placement_, pair)) continue;
+    task_.visit_pairs(placement_, [&](const RangePair& pair) {
+      if (task_.fits(placement_, pair)) return;
       for (const Index end : {pair.from, pair.to}) {
         if (seen_[end]) continue;
         if (auto part = part_with(end)) found.push_back(std::move(*part));
       }
-    }
+    });
     return found;
   }
 
@@ -88,8 +83,8 @@ class LooseSearch {
     return part;
   }
 
+  const MapTask& task_;
   const RangeProblem& problem_;
-  const std::vector<bool>& trusted_;
   const Placement& placement_;
   Index most_;              // nodes of a part
   std::vector<bool> fits_;  // pairs
@@ -99,20 +94,16 @@ class LooseSearch {
 // A part beside what it is tied to.
 class LoosePart {
  public:
-  LoosePart(const RangeProblem& problem, const std::vector<bool>& trusted, const Evidence& evidence,
-            const Placement& placement, Nodes part)
+  LoosePart(const MapTask& task, const Evidence& evidence, const Placement& placement, Nodes part)
       : placement_(placement), part_(std::move(part)) {
     middle_ = placement.positions(Eigen::all, part_).rowwise().mean();
     for (const Index v : part_) {
-      for (const auto& [vertex, edge] : problem.pair_graph.neighbours(v)) {
-        const bool inside = std::ranges::binary_search(part_, vertex);
-        if (inside || !trusted[edge] || !placement.placed[vertex]) continue;
-        const auto& pair = problem.pairs[edge];
-        const Eigen::Vector2d from_middle = placement.positions.col(v) - middle_;
-        ties_.push_back({{placement.positions.col(vertex), pair.distance, pair.sigma,
-                          evidence.cost_of(pair.sigma)},
-                         from_middle});
-      }
+      const Eigen::Vector2d from_middle = placement.positions.col(v) - middle_;
+      task.visit_neighbours(placement, v, [&](Index vertex, Index edge) {
+        if (std::ranges::binary_search(part_, vertex)) return;
+        const auto& pair = task.problem.pairs[edge];
+        ties_.push_back({arm_of(pair, evidence, placement.positions.col(vertex)), from_middle});
+      });
     }
   }
 
@@ -165,18 +156,17 @@ class LoosePart {
 
 }  // namespace
 
-std::vector<PartMove> loose_parts(const RangeProblem& problem, const std::vector<bool>& trusted,
-                                  double gate, const Evidence& evidence,
-                                  const LocalizeOptions& options, const Placement& placement) {
-  if (problem.dimension != 2) return {};
+std::vector<PartMove> loose_parts(const MapTask& task, const Evidence& evidence,
+                                  const Placement& placement) {
+  if (task.problem.dimension != 2) return {};
   std::vector<LoosePart> parts;
-  for (auto& part : LooseSearch(problem, trusted, gate, placement).parts()) {
-    LoosePart loose(problem, trusted, evidence, placement, std::move(part));
+  for (auto& part : LooseSearch(task, placement).parts()) {
+    LoosePart loose(task, evidence, placement, std::move(part));
     if (loose.is_tied()) parts.push_back(std::move(loose));
   }
   std::vector<std::optional<PartMove>> found(2 * parts.size());
-  parallel_for(static_cast<std::int64_t>(found.size()), options.threads, options.progress, "parts",
-               [&](std::int64_t k) { found[k] = parts[k / 2].best(k % 2 == 1); });
+  task.in_parallel(found.size(), "parts",
+                   [&](std::int64_t k) { found[k] = parts[k / 2].best(k % 2 == 1); });
   std::vector<PartMove> moves;
   for (auto& move : found) {
     if (move) moves.push_back(std::move(*move));

@@ -4,7 +4,7 @@
 
 #include "localize/evidence/evidence.hpp"
 #include "localize/fold/part_move.hpp"
-#include "localize/problem/range_problem.hpp"
+#include "localize/problem/map_task.hpp"
 
 namespace isotherm::network::detail {
 
@@ -14,8 +14,7 @@ namespace isotherm::network::detail {
 /// A part is grown from an end of such a pair and takes in what two pairs that fit lead to, so that
 /// it is rigid and ends where a single node or pair leads on. Empty in space.
 /// O(pairs that do not fit * 200 * degree) and 720 multilaterations a part.
-std::vector<PartMove> loose_parts(const RangeProblem& problem, const std::vector<bool>& trusted,
-                                  double gate, const Evidence& evidence,
-                                  const LocalizeOptions& options, const Placement& placement);
+std::vector<PartMove> loose_parts(const MapTask& task, const Evidence& evidence,
+                                  const Placement& placement);
 
 }  // namespace isotherm::network::detail

@@ -10,25 +10,23 @@
 
 namespace isotherm::network::detail {
 
-bool open_folds(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
-                const LocalizeOptions& options, Placement& placement) {
+bool open_folds(const MapTask& task, Placement& placement) {
   constexpr int kMostRounds = 6;
   bool any = false;
-  std::vector<bool> among(problem.nodes, true);
+  std::vector<bool> among(task.problem.nodes, true);
   for (int round = 0; round < kMostRounds; ++round) {
-    const auto evidence = learn_evidence(problem, trusted, placement);
-    auto moves = loose_parts(problem, trusted, gate, evidence, options, placement);
-    for (const auto& fold : find_folds(problem, trusted, evidence, options, placement, among)) {
+    const auto evidence = learn_evidence(task, placement);
+    auto moves = loose_parts(task, evidence, placement);
+    for (const auto& fold : find_folds(task, evidence, placement, among)) {
       moves.push_back(fold.move(placement));
     }
-    const auto moved = take_moves(
-        problem, gains(problem, trusted, gate, evidence, options, placement, moves), placement);
+    const auto moved = take_moves(task.problem, gains(task, evidence, placement, moves), placement);
     if (moved.empty()) break;
     any = true;
-    among = within_steps(problem, moved, kRegionSteps);
-    refine_at_width(problem, std::sqrt(gate), options, placement);
+    among = within_steps(task.problem, moved, kRegionSteps);
+    refine_at_width(task, std::sqrt(task.gate), placement);
   }
-  if (any) refine_robustly(problem, trusted, gate, options, placement);
+  if (any) refine_robustly(task, placement);
   return any;
 }
 

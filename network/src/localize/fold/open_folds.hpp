@@ -2,8 +2,7 @@
 
 #include <vector>
 
-#include "isotherm/network/localize/localize.hpp"
-#include "localize/problem/range_problem.hpp"
+#include "localize/problem/map_task.hpp"
 
 namespace isotherm::network::detail {
 
@@ -11,7 +10,6 @@ namespace isotherm::network::detail {
 /// those that gain most first, and refines it again, as long as there are any; whether there were.
 /// A map of springs does not do that by itself: on the way over a hinge everything fits worse, and
 /// nothing draws a loose part that is far from its place.
-bool open_folds(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
-                const LocalizeOptions& options, Placement& placement);
+bool open_folds(const MapTask& task, Placement& placement);
 
 }  // namespace isotherm::network::detail

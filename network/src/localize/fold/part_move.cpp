@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "isotherm/base/parallel.hpp"
 #include "localize/constants.hpp"
 #include "localize/problem/point_grid.hpp"
 #include "localize/refine/refine.hpp"
@@ -16,12 +15,10 @@ namespace {
 // The part with its surroundings as a network of its own.
 class Trial {
  public:
-  Trial(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
-        const Evidence& evidence, const Crowd& crowd, const Placement& placement,
-        const PartMove& move)
-      : problem_(problem),
-        trusted_(trusted),
-        gate_(gate),
+  Trial(const MapTask& task, const Evidence& evidence, const Crowd& crowd,
+        const Placement& placement, const PartMove& move)
+      : task_(task),
+        problem_(task.problem),
         evidence_(evidence),
         crowd_(crowd),
         placement_(placement),
@@ -64,11 +61,7 @@ class Trial {
   bool is_free(Index node) const { return std::binary_search(free_.begin(), free_.end(), node); }
 
   void visit_neighbours(const std::vector<Index>& nodes, auto&& visit) const {
-    for (const Index v : nodes) {
-      for (const auto& [vertex, edge] : problem_.pair_graph.neighbours(v)) {
-        if (trusted_[edge] && placement_.placed[vertex]) visit(vertex, edge);
-      }
-    }
+    for (const Index v : nodes) task_.visit_neighbours(placement_, v, visit);
   }
 
   static void make_set(std::vector<Index>& nodes) {
@@ -81,7 +74,7 @@ class Trial {
   void gather_nodes() {
     free_ = move_.part;
     visit_neighbours(move_.part, [&](Index vertex, Index edge) {
-      const bool fits = squared_deviation(placement_, problem_.pairs[edge]) <= gate_;
+      const bool fits = task_.fits(placement_, problem_.pairs[edge]);
       if (fits && !problem_.is_anchor[vertex]) free_.push_back(vertex);
     });
     make_set(free_);
@@ -132,7 +125,7 @@ class Trial {
     }
     for (const double factor : kWidths) {
       for (auto& spring : springs) {
-        spring.width_apart = spring.width_close = factor * std::sqrt(gate_);
+        spring.width_apart = spring.width_close = factor * std::sqrt(task_.gate);
       }
       refine(frame_, springs, local_, {.max_iterations = kIterations, .still = kStill});
     }
@@ -172,9 +165,8 @@ class Trial {
     return sum;
   }
 
+  const MapTask& task_;
   const RangeProblem& problem_;
-  const std::vector<bool>& trusted_;
-  double gate_;
   const Evidence& evidence_;
   const Crowd& crowd_;
   const Placement& placement_;
@@ -193,23 +185,18 @@ Index largest_part(const RangeProblem& problem, const Placement& placement) {
   return problem.anchored() ? kLargestPart : std::min(kLargestPart, placed_count(placement) / 2);
 }
 
-MoveOutcome try_move(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
-                     const Evidence& evidence, const Crowd& crowd, const Placement& placement,
-                     const PartMove& move) {
-  return Trial(problem, trusted, gate, evidence, crowd, placement, move).run();
+MoveOutcome try_move(const MapTask& task, const Evidence& evidence, const Crowd& crowd,
+                     const Placement& placement, const PartMove& move) {
+  return Trial(task, evidence, crowd, placement, move).run();
 }
 
-std::vector<MoveOutcome> gains(const RangeProblem& problem, const std::vector<bool>& trusted,
-                               double gate, const Evidence& evidence,
-                               const LocalizeOptions& options, const Placement& placement,
-                               const std::vector<PartMove>& moves) {
-  const Crowd crowd(problem, placement, evidence.absence);
+std::vector<MoveOutcome> gains(const MapTask& task, const Evidence& evidence,
+                               const Placement& placement, const std::vector<PartMove>& moves) {
+  const Crowd crowd(task.problem, placement, evidence.absence);
   std::vector<MoveOutcome> outcomes(moves.size());
-  parallel_for(static_cast<std::int64_t>(moves.size()), options.threads, options.progress, "parts",
-               [&](std::int64_t k) {
-                 outcomes[k] =
-                     try_move(problem, trusted, gate, evidence, crowd, placement, moves[k]);
-               });
+  task.in_parallel(moves.size(), "parts", [&](std::int64_t k) {
+    outcomes[k] = try_move(task, evidence, crowd, placement, moves[k]);
+  });
   std::erase_if(outcomes, [](const MoveOutcome& outcome) {
     return outcome.extra >= -kBetter || outcome.moved.empty();
   });

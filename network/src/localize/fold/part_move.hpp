@@ -2,10 +2,9 @@
 
 #include <vector>
 
-#include "isotherm/network/localize/localize.hpp"
 #include "localize/evidence/crowd.hpp"
 #include "localize/evidence/evidence.hpp"
-#include "localize/problem/range_problem.hpp"
+#include "localize/problem/map_task.hpp"
 
 namespace isotherm::network::detail {
 
@@ -33,15 +32,12 @@ struct MoveOutcome {
 /// no motion of it as a rigid body shows. Only the part moves if the nodes around its neighbours
 /// do not span space, and nothing does if even those around it do not. O(nodes of the part *
 /// degree) and a few sparse factorisations of their size.
-MoveOutcome try_move(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
-                     const Evidence& evidence, const Crowd& crowd, const Placement& placement,
-                     const PartMove& move);
+MoveOutcome try_move(const MapTask& task, const Evidence& evidence, const Crowd& crowd,
+                     const Placement& placement, const PartMove& move);
 
 /// Those of the moves by which the map gains, each tried alone; those that gain most first.
-std::vector<MoveOutcome> gains(const RangeProblem& problem, const std::vector<bool>& trusted,
-                               double gate, const Evidence& evidence,
-                               const LocalizeOptions& options, const Placement& placement,
-                               const std::vector<PartMove>& moves);
+std::vector<MoveOutcome> gains(const MapTask& task, const Evidence& evidence,
+                               const Placement& placement, const std::vector<PartMove>& moves);
 
 /// Makes these moves, but of two that have a node, or neighbours, in common only the first. The
 /// nodes that moved.

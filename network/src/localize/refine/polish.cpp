@@ -8,20 +8,19 @@
 
 namespace isotherm::network::detail {
 
-void polish(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
-            const LocalizeOptions& options, Placement& placement) {
+void polish(const MapTask& task, Placement& placement) {
   constexpr int kMostRounds = 5;
+  const RangeProblem& problem = task.problem;
   std::vector<bool> among(problem.nodes, true);
-  auto evidence = learn_evidence(problem, trusted, placement);
-  double reached = worth(problem, trusted, evidence, placement);
+  auto evidence = learn_evidence(task, placement);
+  double reached = worth(task, evidence, placement);
   for (int round = 0; round < kMostRounds; ++round) {
     auto next = placement;
-    refine_mixture(problem, evidence.absence, true, options.max_iterations, options.progress,
-                   evidence.model, next);
-    evidence = learn_evidence(problem, trusted, next);
-    const auto moved = relocate(problem, gate, evidence, options, among, next);
-    if (!moved.empty()) evidence = learn_evidence(problem, trusted, next);
-    const double now = worth(problem, trusted, evidence, next);
+    refine_mixture(problem, evidence.absence, true, task.options, evidence.model, next);
+    evidence = learn_evidence(task, next);
+    const auto moved = relocate(task, evidence, among, next);
+    if (!moved.empty()) evidence = learn_evidence(task, next);
+    const double now = worth(task, evidence, next);
     if (!(now > reached)) return;
     placement = std::move(next);
     reached = now;

@@ -2,8 +2,7 @@
 
 #include <vector>
 
-#include "isotherm/network/localize/localize.hpp"
-#include "localize/problem/range_problem.hpp"
+#include "localize/problem/map_task.hpp"
 
 namespace isotherm::network::detail {
 
@@ -11,7 +10,6 @@ namespace isotherm::network::detail {
 /// others, are likeliest, and moves of single nodes by which the map becomes likelier, by turns.
 /// Least squares of what fits knows neither how far away ends of a range that is too long may be
 /// nor that nodes without a range are not near each other. @throws Cancelled
-void polish(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
-            const LocalizeOptions& options, Placement& placement);
+void polish(const MapTask& task, Placement& placement);
 
 }  // namespace isotherm::network::detail

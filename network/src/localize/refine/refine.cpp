@@ -274,8 +274,8 @@ RefineOutcome refine_likelihood(const RangeProblem& problem, const std::vector<S
 }
 
 RefineOutcome refine_mixture(const RangeProblem& problem, const Absence& absence, bool too_long,
-                             int max_iterations, const ProgressCallback& progress,
-                             RangeMixture& model, Placement& placement) {
+                             const LocalizeOptions& options, RangeMixture& model,
+                             Placement& placement) {
   auto springs = all_springs(problem, placement);
   add_absent(problem, absence, placement, springs);
   const auto cost_of = [&](const Spring& spring, double length) {
@@ -284,13 +284,13 @@ RefineOutcome refine_mixture(const RangeProblem& problem, const Absence& absence
   const double excess = typical_excess(problem.typical_sigma, model.longest);
   const auto learn = [&](int k) {
     const Progress done{"kinds of ranges", static_cast<std::uint64_t>(k),
-                        static_cast<std::uint64_t>(max_iterations)};
-    if (progress && !progress(done)) throw Cancelled();
+                        static_cast<std::uint64_t>(options.max_iterations)};
+    if (options.progress && !options.progress(done)) throw Cancelled();
     learn_kinds(statistics_of(model, springs, placement), excess, problem.typical_sigma, too_long,
                 model);
     return true;
   };
-  return climb(problem, springs, cost_of, max_iterations, learn, placement);
+  return climb(problem, springs, cost_of, options.max_iterations, learn, placement);
 }
 
 }  // namespace isotherm::network::detail

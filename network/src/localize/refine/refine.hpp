@@ -60,7 +60,7 @@ RefineOutcome refine_likelihood(const RangeProblem& problem, const std::vector<S
 /// damped steps and most likely parameters by turns (expectation maximisation). `too_long` says
 /// whether ranges can be. @throws Cancelled
 RefineOutcome refine_mixture(const RangeProblem& problem, const Absence& absence, bool too_long,
-                             int max_iterations, const ProgressCallback& progress,
-                             RangeMixture& model, Placement& placement);
+                             const LocalizeOptions& options, RangeMixture& model,
+                             Placement& placement);
 
 }  // namespace isotherm::network::detail

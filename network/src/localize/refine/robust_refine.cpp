@@ -26,15 +26,15 @@ double median_deviation(const RangeProblem& problem, const Placement& placement)
   return deviations.empty() ? 0.0 : lower_median(std::move(deviations));
 }
 
-void refine_among(const RangeProblem& problem, const std::vector<bool>& use, double width,
-                  const LocalizeOptions& options, Placement& placement) {
+void refine_among(const MapTask& task, const std::vector<bool>& use, double width,
+                  Placement& placement) {
   constexpr int kIterations = 12;
   constexpr double kStill = 1e-4;  // the next width, or the polish, goes on from here
-  refine(problem, use, placement,
+  refine(task.problem, use, placement,
          {.width = width,
           .max_iterations = kIterations,
           .still = kStill,
-          .progress = options.progress});
+          .progress = task.options.progress});
 }
 
 }  // namespace
@@ -49,37 +49,35 @@ std::vector<bool> ranges_within(const RangeProblem& problem, const Placement& pl
   return within;
 }
 
-std::vector<bool> ranges_in_reach(const RangeProblem& problem, const std::vector<bool>& trusted,
-                                  const Placement& placement, double width) {
-  auto use = ranges_within(problem, placement, std::pow(kFarOutside * width, 2));
-  for (std::size_t k = 0; k < use.size(); ++k) use[k] = use[k] && trusted[problem.pair_of[k]];
+std::vector<bool> ranges_in_reach(const MapTask& task, const Placement& placement, double width) {
+  auto use = ranges_within(task.problem, placement, std::pow(kFarOutside * width, 2));
+  for (std::size_t k = 0; k < use.size(); ++k) {
+    use[k] = use[k] && task.trusted[task.problem.pair_of[k]];
+  }
   return use;
 }
 
-void refine_at_width(const RangeProblem& problem, double width, const LocalizeOptions& options,
-                     Placement& placement) {
-  const auto use = ranges_within(problem, placement, std::pow(kFarOutside * width, 2));
-  refine_among(problem, use, width, options, placement);
+void refine_at_width(const MapTask& task, double width, Placement& placement) {
+  const auto use = ranges_within(task.problem, placement, std::pow(kFarOutside * width, 2));
+  refine_among(task, use, width, placement);
 }
 
-void refine_robustly(const RangeProblem& problem, const std::vector<bool>& trusted, double gate,
-                     const LocalizeOptions& options, Placement& placement) {
+void refine_robustly(const MapTask& task, Placement& placement) {
   constexpr int kMostRounds = 5;
   constexpr double kMedianOfNormal = 0.6745;
-  const double narrow = std::sqrt(gate);
+  const RangeProblem& problem = task.problem;
+  const double narrow = std::sqrt(task.gate);
   const auto spread = [&] { return 2.0 * median_deviation(problem, placement) / kMedianOfNormal; };
   // Far from the minimum: by trusted pairs.
   for (double width = spread(); width > narrow; width = std::min(0.5 * width, spread())) {
-    const auto use = ranges_in_reach(problem, trusted, placement, width);
-    refine_among(problem, use, width, options, placement);
+    refine_among(task, ranges_in_reach(task, placement, width), width, placement);
   }
-  refine_at_width(problem, narrow, options, placement);
+  refine_at_width(task, narrow, placement);
   std::vector<bool> among(problem.nodes, true);
   for (int round = 0; round < kMostRounds; ++round) {
-    const auto evidence = learn_evidence(problem, trusted, placement);
-    const auto moved = relocate(problem, gate, evidence, options, among, placement);
+    const auto moved = relocate(task, learn_evidence(task, placement), among, placement);
     if (moved.empty()) break;
-    refine_at_width(problem, narrow, options, placement);
+    refine_at_width(task, narrow, placement);
     among = within_steps(problem, moved, 1);  // whose surroundings have changed
   }
 }

@@ -54,8 +54,7 @@ WeighedRanges weigh(const RangeProblem& problem, const Absence& absence,
   WeighedRanges weighed;
   weighed.model = start;
   weighed.too_long = too_long;
-  weighed.outcome = refine_mixture(problem, absence, too_long, options.max_iterations,
-                                   options.progress, weighed.model, placement);
+  weighed.outcome = refine_mixture(problem, absence, too_long, options, weighed.model, placement);
   assess(problem, absence, placement, weighed);
   return weighed;
 }

@@ -111,35 +111,30 @@ Eigen::MatrixXd scale(const Pilots& pilots, int d) {
 }
 
 // Makes the distances of the pairs theirs in the median.
-void match_size(const RangeProblem& problem, const std::vector<bool>& trusted,
-                Placement& placement) {
+void match_size(const MapTask& task, Placement& placement) {
   std::vector<double> ratios;
-  for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
-    const auto& pair = problem.pairs[p];
-    if (!trusted[p] || !is_placed(placement, pair)) continue;
+  task.visit_pairs(placement, [&](const RangePair& pair) {
     const double length = distance_of(placement, pair.from, pair.to);
     if (length > 0.0) ratios.push_back(pair.distance / length);
-  }
+  });
   if (!ratios.empty()) placement.positions *= lower_median(std::move(ratios));
 }
 
 // The map as a body of springs.
 class Unfolding {
  public:
-  Unfolding(const RangeProblem& problem, const std::vector<bool>& trusted, Errors errors,
-            const LocalizeOptions& options, Placement& placement)
-      : problem_(problem),
-        trusted_(trusted),
+  Unfolding(const MapTask& task, Errors errors, Placement& placement)
+      : task_(task),
+        problem_(task.problem),
         errors_(errors),
-        options_(options),
         placement_(placement),
-        sigma_(problem.typical_sigma) {}
+        sigma_(task.problem.typical_sigma) {}
 
   // From a loss that is wide beside the errors of the map down to that of a range.
-  void run(double gate) {
+  void run() {
     constexpr double kNarrowest = 0.02;  // typical ranges; the rest is for the refinement
     const double narrow =
-        std::max(std::sqrt(gate), kNarrowest * problem_.typical_distance / sigma_);
+        std::max(std::sqrt(task_.gate), kNarrowest * problem_.typical_distance / sigma_);
     wide_ = std::max(narrow, kRoughMap * problem_.typical_distance / sigma_);
     for (double width = wide_; width > narrow; width *= 0.5) fit(width);
     fit(narrow);
@@ -150,11 +145,11 @@ class Unfolding {
     constexpr int kRounds = 3;
     constexpr int kIterations = 5;
     for (int round = 0; round < kRounds; ++round) {
-      reach_ = Absence::learn(problem_, trusted_, placement_).reach();
+      reach_ = Absence::learn(problem_, task_.trusted, placement_).reach();
       auto springs = ranges(width);
       add_repulsion(springs);
       refine(problem_, springs, placement_,
-             {.max_iterations = kIterations, .progress = options_.progress});
+             {.max_iterations = kIterations, .progress = task_.options.progress});
     }
   }
 
@@ -163,10 +158,9 @@ class Unfolding {
   std::vector<Spring> ranges(double width) const {
     const double apart = errors_ == Errors::too_long ? wide_ : width;
     std::vector<Spring> springs;
-    for (std::size_t p = 0; p < problem_.pairs.size(); ++p) {
-      const auto& pair = problem_.pairs[p];
-      if (trusted_[p]) springs.push_back({pair.from, pair.to, pair.distance, sigma_, apart, width});
-    }
+    task_.visit_pairs(placement_, [&](const RangePair& pair) {
+      springs.push_back({pair.from, pair.to, pair.distance, sigma_, apart, width});
+    });
     return springs;
   }
 
@@ -178,11 +172,10 @@ class Unfolding {
     }
   }
 
+  const MapTask& task_;
   const RangeProblem& problem_;
-  const std::vector<bool>& trusted_;
   Errors errors_;
   double reach_ = 0.0;
-  const LocalizeOptions& options_;
   Placement& placement_;
   double sigma_;
   double wide_ = 0.0;
@@ -190,22 +183,21 @@ class Unfolding {
 
 }  // namespace
 
-Placement map_by_paths(const RangeProblem& problem, const std::vector<bool>& trusted, Errors errors,
-                       double gate, const LocalizeOptions& options) {
-  const auto nodes = largest_part(problem, trusted);
+Placement map_by_paths(const MapTask& task, Errors errors) {
+  const RangeProblem& problem = task.problem;
+  const auto nodes = largest_part(problem, task.trusted);
   if (static_cast<int>(nodes.size()) <= problem.dimension) {
     return place_nodes(problem, {}, Eigen::MatrixXd(problem.dimension, 0));
   }
-  auto placement =
-      place_nodes(problem, nodes, scale(choose_pilots(problem, trusted, nodes), problem.dimension));
-  match_size(problem, trusted, placement);
-  unfold(problem, trusted, errors, gate, options, placement);
+  const auto pilots = choose_pilots(problem, task.trusted, nodes);
+  auto placement = place_nodes(problem, nodes, scale(pilots, problem.dimension));
+  match_size(task, placement);
+  unfold(task, errors, placement);
   return placement;
 }
 
-void unfold(const RangeProblem& problem, const std::vector<bool>& trusted, Errors errors,
-            double gate, const LocalizeOptions& options, Placement& placement) {
-  Unfolding(problem, trusted, errors, options, placement).run(gate);
+void unfold(const MapTask& task, Errors errors, Placement& placement) {
+  Unfolding(task, errors, placement).run();
 }
 
 }  // namespace isotherm::network::detail

@@ -2,8 +2,7 @@
 
 #include <vector>
 
-#include "isotherm/network/localize/localize.hpp"
-#include "localize/problem/range_problem.hpp"
+#include "localize/problem/map_task.hpp"
 
 namespace isotherm::network::detail {
 
@@ -17,11 +16,9 @@ enum class Errors { any, too_long };
 /// `Errors::too_long` ranges shorter than the distance of their ends keep a wide loss. O(pilots *
 /// ranges * log nodes) and the factorisations of the springs. Nothing is placed if there are too
 /// few nodes. @throws Cancelled
-Placement map_by_paths(const RangeProblem& problem, const std::vector<bool>& trusted, Errors errors,
-                       double gate, const LocalizeOptions& options);
+Placement map_by_paths(const MapTask& task, Errors errors);
 
 /// The springs alone, on the placed nodes of any rough map.
-void unfold(const RangeProblem& problem, const std::vector<bool>& trusted, Errors errors,
-            double gate, const LocalizeOptions& options, Placement& placement);
+void unfold(const MapTask& task, Errors errors, Placement& placement);
 
 }  // namespace isotherm::network::detail

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "isotherm/base/parallel.hpp"
 #include "localize/constants.hpp"
 #include "localize/start/anchor_frame.hpp"
 
@@ -16,20 +15,19 @@ struct Region {
 };
 
 // Placed nodes by steps over trusted pairs.
-Region region_around(const RangeProblem& problem, const std::vector<bool>& trusted,
-                     const Placement& placement, Index middle) {
+Region region_around(const MapTask& task, const Placement& placement, Index middle) {
   Region region{{middle}, {}};
-  std::vector<bool> seen(problem.nodes, false);
+  std::vector<bool> seen(task.problem.nodes, false);
   seen[middle] = true;
   std::size_t last = 0;  // the first node of the last step
   for (int step = 0; step < kRegionSteps; ++step) {
     const std::size_t end = region.nodes.size();
     for (std::size_t k = last; k < end; ++k) {
-      for (const auto& [vertex, edge] : problem.pair_graph.neighbours(region.nodes[k])) {
-        if (!trusted[edge] || seen[vertex] || !placement.placed[vertex]) continue;
+      task.visit_neighbours(placement, region.nodes[k], [&](Index vertex, Index) {
+        if (seen[vertex]) return;
         seen[vertex] = true;
         region.nodes.push_back(vertex);
-      }
+      });
     }
     last = end;
   }
@@ -43,8 +41,8 @@ struct Part {
   std::vector<bool> trusted;
   Placement placement;
 
-  Part(const RangeProblem& whole, const std::vector<bool>& trusted_pairs,
-       const Placement& everywhere, const Region& region) {
+  Part(const MapTask& task, const Placement& everywhere, const Region& region) {
+    const RangeProblem& whole = task.problem;
     std::vector<Index> number(whole.nodes, -1);
     for (const Index v : region.nodes) {
       number[v] = problem.nodes++;
@@ -61,7 +59,7 @@ struct Part {
       if (pair.from < 0 || pair.to < 0) continue;
       problem.pairs.push_back(pair);
       edges.push_back({pair.from, pair.to, 1.0});
-      trusted.push_back(trusted_pairs[p]);
+      trusted.push_back(task.trusted[p]);
     }
     problem.pair_graph = spectral::WeightedGraph(problem.nodes, edges);
     placement.positions = everywhere.positions(Eigen::all, region.nodes);
@@ -70,27 +68,26 @@ struct Part {
 };
 
 // Nothing where its outermost nodes do not say where it lies.
-Placement draw(const Part& part, double gate, const LocalizeOptions& options) {
+Placement draw(const Part& part, const MapTask& task) {
   auto free = part.problem;
   free.is_anchor.assign(free.nodes, false);
-  auto map = map_by_paths(free, part.trusted, Errors::any, gate, options);
+  auto quiet = task.options;
+  quiet.progress = {};
+  auto map = map_by_paths({free, part.trusted, task.gate, quiet}, Errors::any);
   if (!align_to_anchors(part.problem, part.placement, map)) return {};
   return map;
 }
 
 }  // namespace
 
-Placement redraw(const RangeProblem& problem, const std::vector<bool>& trusted,
-                 const std::vector<bool>& among, double gate, const LocalizeOptions& options,
-                 const Placement& placement) {
+Placement redraw(const MapTask& task, const std::vector<bool>& among, const Placement& placement) {
+  const RangeProblem& problem = task.problem;
   std::vector<int> against(problem.nodes, 0);
-  for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
-    const auto& pair = problem.pairs[p];
-    if (!trusted[p] || !is_placed(placement, pair)) continue;
-    if (squared_deviation(placement, pair) <= gate) continue;
+  task.visit_pairs(placement, [&](const RangePair& pair) {
+    if (task.fits(placement, pair)) return;
     ++against[pair.from];
     ++against[pair.to];
-  }
+  });
   std::vector<Index> order;
   for (Index v = 0; v < problem.nodes; ++v) {
     if (among[v] && against[v] > 0) order.push_back(v);
@@ -101,20 +98,16 @@ Placement redraw(const RangeProblem& problem, const std::vector<bool>& trusted,
   std::vector<bool> drawn(problem.nodes, false);
   for (const Index middle : order) {
     if (drawn[middle]) continue;
-    regions.push_back(region_around(problem, trusted, placement, middle));
+    regions.push_back(region_around(task, placement, middle));
     const auto& region = regions.back();
     for (std::size_t k = 0; k < region.nodes.size(); ++k) {
       if (!region.outermost[k]) drawn[region.nodes[k]] = true;
     }
   }
   std::vector<Placement> maps(regions.size());
-  parallel_for(static_cast<std::int64_t>(regions.size()), options.threads, options.progress,
-               "regions", [&](std::int64_t k) {
-                 const Part part(problem, trusted, placement, regions[k]);
-                 auto quiet = options;
-                 quiet.progress = {};
-                 maps[k] = draw(part, gate, quiet);
-               });
+  task.in_parallel(regions.size(), "regions", [&](std::int64_t k) {
+    maps[k] = draw(Part(task, placement, regions[k]), task);
+  });
   auto result = placement;
   for (std::size_t k = 0; k < regions.size(); ++k) {
     if (maps[k].placed.empty()) continue;

@@ -12,8 +12,6 @@ namespace isotherm::network::detail {
 /// lies. Paths are short in a region: there a part comes to its place that in the large map turned
 /// the wrong way. Only regions around nodes in `among` count: those near what has changed since
 /// they were drawn last.
-Placement redraw(const RangeProblem& problem, const std::vector<bool>& trusted,
-                 const std::vector<bool>& among, double gate, const LocalizeOptions& options,
-                 const Placement& placement);
+Placement redraw(const MapTask& task, const std::vector<bool>& among, const Placement& placement);
 
 }  // namespace isotherm::network::detail

@@ -23,21 +23,16 @@ constexpr int kMostRounds = 10;  // of what is tried as long as it helps
 
 class Search {
  public:
-  Search(const RangeProblem& problem, const Placement& anchors, const std::vector<bool>& trusted,
-         double gate, const LocalizeOptions& options)
-      : problem_(problem),
-        free_(problem),
-        anchors_(anchors),
-        trusted_(trusted),
-        gate_(gate),
-        options_(options),
-        best_(anchors) {
-    free_.is_anchor.assign(problem.nodes, false);
+  Search(const MapTask& task, const Placement& anchors)
+      : task_(task), problem_(task.problem), free_(problem_), anchors_(anchors), best_(anchors) {
+    free_.is_anchor.assign(problem_.nodes, false);
   }
 
   Placement run() {
-    if (options_.method != LocalizeMethod::robust) return started(trusted_, Errors::any);
-    const auto likely = likely_pairs(problem_, kLikely, options_);
+    if (task_.options.method != LocalizeMethod::robust) {
+      return started(task_.trusted, Errors::any);
+    }
+    const auto likely = likely_pairs(problem_, kLikely, task_.options);
     const bool has_false = std::find(likely.begin(), likely.end(), false) != likely.end();
     consider(started(has_false ? supported_pairs(problem_, likely) : likely, Errors::any));
     unfold_best();
@@ -49,11 +44,11 @@ class Search {
  private:
   Placement started(const std::vector<bool>& pairs, Errors errors) {
     errors_ = errors;
-    return in_frame(map_by_paths(free_, pairs, errors, gate_, options_));
+    return in_frame(map_by_paths({free_, pairs, task_.gate, task_.options}, errors));
   }
 
   void try_the_other_start() {
-    consider(started(trusted_, Errors::too_long));
+    consider(started(task_.trusted, Errors::too_long));
     unfold_best();
     for (int round = 0; round < kMostRounds && consider(heated(best_)); ++round) unfold_best();
   }
@@ -70,22 +65,23 @@ class Search {
   }
 
   Placement heated(Placement map) const {
-    unfold(problem_, trusted_, best_errors_, gate_, options_, map);
+    unfold(task_, best_errors_, map);
     return map;
   }
 
   // Whether a map that is settled makes the best one better.
   bool consider(Placement map) {
-    refine_robustly(problem_, trusted_, gate_, options_, map);
-    polish(problem_, trusted_, gate_, options_, map);
+    refine_robustly(task_, map);
+    polish(task_, map);
     return merge(std::move(map));
   }
 
   // Whether some region of it is better drawn anew, of those that are not as they were last time.
   bool consider_redrawn() {
-    const auto among = within_steps(problem_, changed_since(redrawn_), kRegionSteps, trusted_);
+    const auto changed = changed_since(redrawn_);
     redrawn_ = best_;
-    return merge(redraw(problem_, trusted_, among, gate_, options_, best_));
+    return merge(
+        redraw(task_, within_steps(problem_, changed, kRegionSteps, task_.trusted), best_));
   }
 
   // Nodes that are elsewhere in the best map; all since there was none.
@@ -102,7 +98,7 @@ class Search {
 
   // The better one of both, with the parts that are better in the other.
   bool merge(Placement map) {
-    double reached = worth(problem_, trusted_, map);
+    double reached = worth(task_, map);
     const double before = worth_;
     if (reached > worth_) {
       std::swap(map, best_);
@@ -111,8 +107,8 @@ class Search {
     }
     if (before > -std::numeric_limits<double>::infinity()) {
       auto both = best_;
-      if (in_frame_of_best(map) && recombine(problem_, trusted_, gate_, options_, map, both)) {
-        reached = worth(problem_, trusted_, both);
+      if (in_frame_of_best(map) && recombine(task_, map, both)) {
+        reached = worth(task_, both);
         if (reached > worth_) {
           best_ = std::move(both);
           worth_ = reached;
@@ -136,8 +132,8 @@ class Search {
   void unfold_best() {
     if (unfolded_ == worth_) return;
     auto map = best_;
-    if (open_folds(problem_, trusted_, gate_, options_, map)) {
-      polish(problem_, trusted_, gate_, options_, map);
+    if (open_folds(task_, map)) {
+      polish(task_, map);
       merge(std::move(map));
     }
     unfolded_ = worth_;
@@ -147,21 +143,17 @@ class Search {
   bool is_enough() const {
     double pairs = 0.0;
     double against = 0.0;
-    for (std::size_t p = 0; p < problem_.pairs.size(); ++p) {
-      const auto& pair = problem_.pairs[p];
-      if (!trusted_[p] || !is_placed(best_, pair)) continue;
+    task_.visit_pairs(best_, [&](const RangePair& pair) {
       pairs += 1.0;
-      if (squared_deviation(best_, pair) > gate_) against += 1.0;
-    }
+      if (!task_.fits(best_, pair)) against += 1.0;
+    });
     return against <= kHardlyAny * pairs;
   }
 
+  const MapTask& task_;
   const RangeProblem& problem_;
   RangeProblem free_;  // of anchors
   const Placement& anchors_;
-  const std::vector<bool>& trusted_;
-  double gate_;
-  const LocalizeOptions& options_;
   Placement best_;
   Placement redrawn_;  // the best map when regions were drawn last
   double worth_ = -std::numeric_limits<double>::infinity();
@@ -211,10 +203,8 @@ std::vector<bool> supported_pairs(const RangeProblem& problem, const std::vector
   return supported;
 }
 
-Placement search_map(const RangeProblem& problem, const Placement& anchors,
-                     const std::vector<bool>& trusted, double gate,
-                     const LocalizeOptions& options) {
-  return Search(problem, anchors, trusted, gate, options).run();
+Placement search_map(const MapTask& task, const Placement& anchors) {
+  return Search(task, anchors).run();
 }
 
 }  // namespace isotherm::network::detail

@@ -2,8 +2,7 @@
 
 #include <vector>
 
-#include "isotherm/network/localize/localize.hpp"
-#include "localize/problem/range_problem.hpp"
+#include "localize/problem/map_task.hpp"
 
 namespace isotherm::network::detail {
 
@@ -22,7 +21,6 @@ std::vector<bool> supported_pairs(const RangeProblem& problem, const std::vector
 /// is refined, and of two maps each part is taken from where it is likelier. So is what comes of
 /// mirroring parts of the best map, unfolding it again, and drawing regions of it anew, as long as
 /// that helps. Plain least squares has the first map as it is. @throws Cancelled
-Placement search_map(const RangeProblem& problem, const Placement& anchors,
-                     const std::vector<bool>& trusted, double gate, const LocalizeOptions& options);
+Placement search_map(const MapTask& task, const Placement& anchors);
 
 }  // namespace isotherm::network::detail
