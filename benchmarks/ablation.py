@@ -54,8 +54,6 @@ MOVES = {
          "if (trial == Trial::lesson_of_scales && {off}) continue;"),
     "most loops called wider or sharper":
         ("climb/learn.cpp", "sharper_most(shares)}) {\n", "if (start.factor != 1.0 && {off}) continue;"),
-    "lessons taken farther": (CLIMB, "::take_farther(const Lesson<Pose>& found) {\n",
-                              "if ({off}) return false;"),
     "loops weighed by the others": (CLIMB, "::weigh_by_others() {\n", "if ({off}) return false;"),
     "the look afar": (CLIMB, "::weigh_afar() {\n", "if ({off}) return false;"),
     "all accepted that are not false beyond doubt":

@@ -91,37 +91,5 @@ TYPED_TEST(LessonOf, OdometryErrsNoMoreThanItsStepsVary) {
   }
 }
 
-// In logs, by the share of each scale, and no farther than scales may be.
-TYPED_TEST(LessonOf, LeadsFartherOnTheSameWay) {
-  using Pose = TypeParam;
-  using Tangent = typename Pose::Tangent;
-  Assessment<Pose> assessment(this->objective_);
-  const auto now = this->assess(assessment, {1.0, 1.0 / 3.0}, {{30.0, 20.0, 10.0, 0.0}});
-  const auto lesson = learn(assessment, now, false);
-  const Tangent most = Tangent::Constant(kMostScale);
-  const auto once = beyond(lesson, now, most, 1.0);
-  EXPECT_NEAR(once.scale.odometry, lesson.scale.odometry, 1e-12);
-  EXPECT_TRUE(once.shapes.is_about(lesson.shapes));
-  EXPECT_NEAR(once.shares.loops[1], lesson.shares.loops[1], 1e-12);
-
-  const auto thrice = beyond(lesson, now, most, 3.0);
-  EXPECT_NEAR(std::log(thrice.scale.loops / now.scale.loops),
-              3.0 * std::log(lesson.scale.loops / now.scale.loops), 1e-9);
-  const Tangent change = lesson.shapes.odometry.cwiseQuotient(now.shapes.odometry);
-  EXPECT_TRUE(thrice.shapes.odometry.isApprox(
-      now.shapes.odometry.cwiseProduct(change.array().cube().matrix()), 1e-9));
-  EXPECT_NEAR(thrice.shares.count(), lesson.shares.count(), 1e-9);
-  const auto odds = [](const ScaleShares& shares) { return shares.loops[1] / shares.loops[0]; };
-  EXPECT_NEAR(std::log(odds(thrice.shares) / odds(now.shares)),
-              3.0 * std::log(odds(lesson.shares) / odds(now.shares)), 1e-9);
-
-  const auto very_far = beyond(lesson, now, most, 1e6);
-  EXPECT_NEAR(very_far.shares.count(), lesson.shares.count(), 1e-9) << "however far";
-
-  const Tangent least = Tangent::Constant(std::log(lesson.scale.odometry) - 1.0);
-  const auto held = beyond(lesson, now, least, 3.0);
-  EXPECT_LE(log_scales(held.scale.odometry, held.shapes.odometry).maxCoeff(), least[0] + 1e-12);
-}
-
 }  // namespace
 }  // namespace isotherm::slam::detail

@@ -112,7 +112,7 @@ Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
   grow();
   now_.accepted = accepted;
   assess();
-  while (learn_more_than(0.0, true) || weigh_anew()) {
+  while (learn_more_than(0.0) || weigh_anew()) {
   }
   return now_;
 }
@@ -214,7 +214,6 @@ template <class Pose>
 void Climb<Pose>::begin() {
   dropped_.assign(now_.accepted.size(), false);
   learnt_from_ = drawn_from_ = 0;
-  stride_ = 1.0;
   failed_ = {};
   assessment_.assess(now_);
   predict_runs();
@@ -246,7 +245,7 @@ const Explanation<Pose>* Climb<Pose>::grow() {
 // False where no move is left.
 template <class Pose>
 bool Climb<Pose>::move() {
-  return shift() || learn_more_than(0.0, true) || weigh_anew() ||
+  return shift() || learn_more_than(0.0) || weigh_anew() ||
          once(Trial::undecided, [this] { return accept_undecided(); }) ||
          once(Trial::doubtful, [this] { return drop_undecided(); });
 }
@@ -445,10 +444,9 @@ bool Climb<Pose>::try_all_as(const Selection& loops, bool accepted) {
   return true;
 }
 
-// Whether there was anything to learn that gains more than this; `at_last`: where no loop is to be
-// accepted or dropped.
+// Whether there was anything to learn that gains more than this.
 template <class Pose>
-bool Climb<Pose>::learn_more_than(double gain, bool at_last) {
+bool Climb<Pose>::learn_more_than(double gain) {
   if (!options_.calibrate) return false;
   learnt_from_ = std::max<std::size_t>(now_.accepted_count(), 1);
   const double least = std::max(gain, kBetter);
@@ -456,31 +454,11 @@ bool Climb<Pose>::learn_more_than(double gain, bool at_last) {
     if (failed_[trial]) continue;
     const Lesson<Pose> found = learn(assessment_, now_, trial == Trial::lesson_of_scales);
     if (found.gain <= least) continue;
-    if (take(found, at_last)) return true;
+    if (try_with(scales_of(found))) return true;
     failed_[trial] = true;
     if (found.shapes.is_about(now_.shapes)) failed_[Trial::lesson_of_scales] = true;
   }
   return false;
-}
-
-// Whether a lesson gains, or more of it than it says.
-template <class Pose>
-bool Climb<Pose>::take(const Lesson<Pose>& found, bool at_last) {
-  if (!at_last) return try_with(scales_of(found));
-  if (!take_farther(found)) {
-    stride_ = 1.0;
-    if (!try_with(scales_of(found))) return false;
-  }
-  stride_ *= 2.0;
-  return true;
-}
-
-// Where lessons change little: on a long way loops turn out to be of other scales.
-template <class Pose>
-bool Climb<Pose>::take_farther(const Lesson<Pose>& found) {
-  if (stride_ == 1.0) return false;
-  const Lesson<Pose> far = beyond(found, now_, objective_.most_odometry(), stride_);
-  return about_the_same(far.scale, now_.scale) && try_with(scales_of(far), {.gain = found.gain});
 }
 
 // Whether that gains as much, or else nothing changes. Scales at which the normal equations break
@@ -521,7 +499,6 @@ void Climb<Pose>::predict_runs() {
 
 template <class Pose>
 void Climb<Pose>::note(std::size_t accepted, std::size_t dropped) {
-  stride_ = 1.0;
   moves_.push_back({.accepted = static_cast<std::int64_t>(accepted),
                     .dropped = static_cast<std::int64_t>(dropped),
                     .in_force = static_cast<std::int64_t>(now_.accepted_count())});

@@ -125,9 +125,7 @@ class Climb {
   Group next_batch() const;
   void accept(const Selection& loops);
   bool try_all_as(const Selection& loops, bool accepted);
-  bool learn_more_than(double gain, bool at_last = false);
-  bool take(const Lesson<Pose>& found, bool at_last);
-  bool take_farther(const Lesson<Pose>& found);
+  bool learn_more_than(double gain);
   bool once(Trial trial, const std::function<bool()>& move);
   bool weigh_anew();
   bool weigh_by_others();
@@ -156,7 +154,6 @@ class Climb {
   std::vector<Passed> passed_;
   std::vector<bool> dropped_;          // since the climb last rose; not tried again
   std::size_t learnt_from_ = 0;        // loops, at the last lesson
-  double stride_ = 1.0;                // of the next lesson of the same loops
   std::size_t drawn_from_ = 0;         // loops, when the map was last drawn anew
   std::array<bool, trials> failed_{};  // trials here; not repeated until a change
   bool looks_afar_ = true;

@@ -269,41 +269,6 @@ Lesson<Pose> learn(const Assessment<Pose>& assessment, const Explanation<Pose>& 
   return best;
 }
 
-template <class Pose>
-Lesson<Pose> beyond(const Lesson<Pose>& lesson, const Explanation<Pose>& now,
-                    const typename Pose::Tangent& most_odometry, double stride) {
-  using Tangent = typename Pose::Tangent;
-  const auto farther = [stride](const Tangent& from, const Tangent& to, const Tangent& most) {
-    const Tangent logs = (from + stride * (to - from)).cwiseMax(-kMostScale).cwiseMin(most);
-    return scale_and_shape(logs);
-  };
-  Lesson<Pose> far = lesson;
-  std::tie(far.scale.odometry, far.shapes.odometry) =
-      farther(log_scales(now.scale.odometry, now.shapes.odometry),
-              log_scales(lesson.scale.odometry, lesson.shapes.odometry), most_odometry);
-  std::tie(far.scale.loops, far.shapes.loops) =
-      farther(log_scales(now.scale.loops, now.shapes.loops),
-              log_scales(lesson.scale.loops, lesson.shapes.loops), Tangent::Constant(kMostScale));
-  ByScale logs;
-  logs.fill(kNever);
-  for (std::size_t j = 0; j < kScaleCount; ++j) {
-    const double after = lesson.shares.loops[j];
-    const double before = now.shares.loops[j];
-    if (after == 0.0) continue;
-    logs[j] = std::log(after);
-    if (before > 0.0) logs[j] += (stride - 1.0) * std::log(after / before);
-  }
-  const double most = *std::ranges::max_element(logs);
-  for (std::size_t j = 0; j < kScaleCount; ++j) far.shares.loops[j] = std::exp(logs[j] - most);
-  const double more = far.shares.count() / lesson.shares.count();
-  for (double& share : far.shares.loops) share /= more;
-  return far;
-}
-
-template Lesson<Pose2> beyond(const Lesson<Pose2>&, const Explanation<Pose2>&,
-                              const Pose2::Tangent&, double);
-template Lesson<Pose3> beyond(const Lesson<Pose3>&, const Explanation<Pose3>&,
-                              const Pose3::Tangent&, double);
 template Lesson<Pose2> learn(const Assessment<Pose2>&, const Explanation<Pose2>&, bool);
 template Lesson<Pose3> learn(const Assessment<Pose3>&, const Explanation<Pose3>&, bool);
 

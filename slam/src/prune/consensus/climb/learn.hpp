@@ -24,11 +24,4 @@ template <class Pose>
 Lesson<Pose> learn(const Assessment<Pose>& assessment, const Explanation<Pose>& explanation,
                    bool same_shapes);
 
-/// What a lesson leads to that is taken so many times as far from `now`, where expectation
-/// maximisation gains ever less (Salakhutdinov and Roweis, Adaptive overrelaxed bound optimization
-/// methods, ICML 2003). Not beyond what scales may be.
-template <class Pose>
-Lesson<Pose> beyond(const Lesson<Pose>& lesson, const Explanation<Pose>& now,
-                    const typename Pose::Tangent& most_odometry, double stride);
-
 }  // namespace isotherm::slam::detail
