@@ -104,7 +104,8 @@ TYPED_TEST(CarryOf, OfSomeLoopsLeadsToThePeakOfAll) {
   EXPECT_NEAR(all.from(there).evidence, from_nothing, 2.0 * kBetter);
 }
 
-// Of loops in thousands, half of them false in groups.
+// Of loops in thousands, half of them false in groups. Either stops short of its peak by what one
+// more lesson would gain, of odometry, of loops or of their kinds.
 TEST(Search, OnASampleFindsWhatClimbsFromEachStartFind) {
   const auto city = simulate_city({.poses = 4000, .measurements = {.loops = 1300}, .seed = 9});
   const auto bad = corrupt(city.graph, city.truth,
@@ -121,7 +122,7 @@ TEST(Search, OnASampleFindsWhatClimbsFromEachStartFind) {
     if (peak.evidence > highest) accepted = peak.accepted;
     highest = std::max(highest, peak.evidence);
   });
-  EXPECT_GT(found.front().evidence, highest - 2.0 * kBetter);
+  EXPECT_GT(found.front().evidence, highest - 3.0 * kBetter);
   EXPECT_EQ(found.front().accepted, accepted);
 }
 

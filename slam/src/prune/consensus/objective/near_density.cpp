@@ -10,7 +10,6 @@
 #include "isotherm/base/statistics.hpp"
 #include "prune/consensus/constants.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
-#include "prune/consensus/objective/log_sum.hpp"
 #include "prune/consensus/pairs/loop_pair.hpp"
 
 namespace isotherm::slam::detail {
@@ -21,22 +20,25 @@ constexpr std::size_t kMostWeighed = 50000;
 constexpr double kDeviationOfMad = 1.4826;  // of a normal distribution
 constexpr std::uint64_t kSeed = 1;
 
-// Median squared steps of odometry, in translation and in rotation, along one axis.
+// Variance of anything up to half a mean step of odometry either way, of translation and of
+// rotation along one axis.
 template <class Pose>
-typename Pose::Tangent median_step(const OdometryChain<Pose>& odometry) {
-  std::vector<double> translations;
-  std::vector<double> rotations;
+typename Pose::Tangent half_step_variance(const OdometryChain<Pose>& odometry) {
+  double translation = 0.0;
+  double rotation = 0.0;
+  double count = 0.0;
   for (Index v = 1; v < odometry.vertex_count(); ++v) {
     if (odometry.chain(v) != odometry.chain(v - 1)) continue;
     const typename Pose::Tangent step = odometry.relative(v - 1, v).T.log();
-    translations.push_back(step.template head<Pose::kDim>().squaredNorm());
-    rotations.push_back(step.template tail<Pose::kDof - Pose::kDim>().squaredNorm());
+    translation += step.template head<Pose::kDim>().norm();
+    rotation += step.template tail<Pose::kDof - Pose::kDim>().norm();
+    count += 1.0;
   }
-  typename Pose::Tangent square = Pose::Tangent::Zero();
-  if (translations.empty()) return square;
-  square.template head<Pose::kDim>().setConstant(quantile(std::move(translations), 0.5));
-  square.template tail<Pose::kDof - Pose::kDim>().setConstant(quantile(std::move(rotations), 0.5));
-  return square;
+  typename Pose::Tangent mean = Pose::Tangent::Zero();
+  if (count == 0.0) return mean;
+  mean.template head<Pose::kDim>().setConstant(translation / count);
+  mean.template tail<Pose::kDof - Pose::kDim>().setConstant(rotation / count);
+  return mean.cwiseAbs2() / 12.0;
 }
 
 }  // namespace
@@ -76,13 +78,10 @@ NearDensity<Pose>::NearDensity(const ReducedGraph<Pose>& graph) {
   find_places(graph);
 }
 
-// Medians and median deviations, with the loops' own uncertainty. However well places are told
-// apart, the nearest pose to one is up to a step of odometry away: as if one loop more had been
-// off by that, since a few loops say little of how far others are.
 template <class Pose>
 void NearDensity<Pose>::fit(const ReducedGraph<Pose>& graph) {
   const auto loops = forward_loops(graph, {});
-  const Tangent step = median_step(graph.odometry);
+  const Tangent nearest = half_step_variance(graph.odometry);
   const auto median_over = [&loops](auto value) {
     std::vector<double> values;
     values.reserve(loops.size());
@@ -97,19 +96,13 @@ void NearDensity<Pose>::fit(const ReducedGraph<Pose>& graph) {
     turn[d] = median_over([d](const auto& m) { return m.T.rotation_log()[d - Pose::kDim]; });
   }
   center_inverse_ = Pose::exp(turn).inverse();
-  auto& [alike, near] = kernels_;
   for (int d = 0; d < Pose::kDof; ++d) {
-    const double mad = median_over([&](const auto& m) { return std::abs(offset(m.T)[d]); });
-    const auto count = static_cast<double>(loops.size());
-    const double square =
-        (count * kDeviationOfMad * mad * kDeviationOfMad * mad + step[d]) / (count + 1.0) +
-        median_over([d](const auto& m) { return m.covariance(d, d); });
-    alike.deviation[d] = std::sqrt(square);
-    near.deviation[d] = std::sqrt(square + step[d]);
+    const double differ =
+        kDeviationOfMad * median_over([&](const auto& m) { return std::abs(offset(m.T)[d]); });
+    const double stated = median_over([d](const auto& m) { return m.covariance(d, d); });
+    deviation_[d] = std::sqrt(differ * differ + stated + nearest[d]);
   }
-  for (Kernel& kernel : kernels_) {
-    kernel.log_peak = -kernel.deviation.array().log().sum() - 0.5 * Pose::kDof * kLog2Pi;
-  }
+  log_peak_ = -deviation_.array().log().sum() - 0.5 * Pose::kDof * kLog2Pi;
 }
 
 template <class Pose>
@@ -154,54 +147,32 @@ double NearDensity<Pose>::log_nearer(const Pose& z, const Tangent& residual, boo
 // But for a constant.
 template <class Pose>
 double NearDensity<Pose>::log_at(const Pose& T) const {
-  const Tangent off = offset(T);
-  const auto log_part = [&off](const Kernel& kernel) {
-    const double square = off.cwiseQuotient(kernel.deviation).squaredNorm();
-    return kernel.log_peak - 0.5 * (kTailDof + Pose::kDof) * std::log1p(square / kTailDof);
-  };
-  return log_sum(log_part(kernels_[0]), log_part(kernels_[1]));
-}
-
-template <class Pose>
-double NearDensity<Pose>::Kernel::over_peak(const Tangent& off) const {
-  return std::exp(-0.5 * off.cwiseQuotient(deviation).squaredNorm());
-}
-
-template <class Pose>
-double NearDensity<Pose>::Kernel::squared_reach() const {
-  const double reach = kReach * deviation.template head<Pose::kDim>().maxCoeff();
-  return reach * reach;
+  const double square = offset(T).cwiseQuotient(deviation_).squaredNorm();
+  return -0.5 * (kTailDof + Pose::kDof) * std::log1p(square / kTailDof);
 }
 
 // Poses near each other are rare on a large map: they are looked for, not drawn, from every
 // `stride`th anchor to later places.
 template <class Pose>
 void NearDensity<Pose>::count_near(const Places& on, std::size_t first, std::size_t stride,
-                                   std::array<Count, 2>& counts) const {
+                                   Count& count) const {
   const nanoflann::SearchParams unsorted(0, 0.0F, false);
+  const double reach = kReach * deviation_.template head<Pose::kDim>().maxCoeff();
   std::vector<std::pair<Eigen::Index, double>> near;
-  std::array<std::size_t, 2> weighed{};
-  for (std::size_t next = first; next < anchors_.size(); next += stride) {
+  std::size_t weighed = 0;
+  for (std::size_t next = first; next < anchors_.size() && weighed <= kMostWeighed / stride;
+       next += stride) {
     const std::size_t a = anchors_[next];
-    std::array<double, 2> reach{};  // squared; none where enough have been weighed
-    for (std::size_t k = 0; k < reach.size(); ++k) {
-      if (weighed[k] > kMostWeighed / stride) continue;
-      reach[k] = kernels_[k].squared_reach();
-      count_pairs(a, counts[k].pairs);
-    }
-    const double farthest = std::ranges::max(reach);
-    if (farthest == 0.0) break;
+    count_pairs(a, count.pairs);
     const typename Pose::Translation middle = on.poses[a] * center_;
-    on.tree.index->radiusSearch(middle.data(), farthest, near, unsorted);
+    on.tree.index->radiusSearch(middle.data(), reach * reach, near, unsorted);
+    weighed += near.size();
     const Pose T_a_world = on.poses[a].inverse();
     for (const auto& [found, square] : near) {
-      for (std::size_t k = 0; k < reach.size(); ++k) weighed[k] += square < reach[k];
       const auto b = static_cast<std::size_t>(found);
       if (b <= a) continue;
-      const Tangent off = offset(T_a_world * on.poses[b]);
-      for (std::size_t k = 0; k < reach.size(); ++k) {
-        if (square < reach[k]) counts[k].near[class_of(a, b)] += kernels_[k].over_peak(off);
-      }
+      const Tangent off = offset(T_a_world * on.poses[b]).cwiseQuotient(deviation_);
+      count.near[class_of(a, b)] += std::exp(-0.5 * off.squaredNorm());
     }
   }
 }
@@ -211,21 +182,15 @@ void NearDensity<Pose>::count_near(const Places& on, std::size_t first, std::siz
 template <class Pose>
 std::array<double, kProposalClasses> NearDensity<Pose>::log_mean(
     const std::vector<std::vector<Pose>>& maps) const {
-  std::array<Count, 2> counts;
-  for (auto& [near, pairs] : counts) {
-    near.fill(0.5 * std::exp2(-0.5 * Pose::kDof));
-    pairs.fill(1.0);
-  }
+  Count count;
+  count.near.fill(0.5 * std::exp2(-0.5 * Pose::kDof));
+  count.pairs.fill(1.0);
   for (std::size_t m = 0; m < maps.size(); ++m) {
-    const Places on(places_, maps[m]);
-    count_near(on, m, maps.size(), counts);
+    count_near(Places(places_, maps[m]), m, maps.size(), count);
   }
   std::array<double, kProposalClasses> result;
   for (std::size_t c = 0; c < kProposalClasses; ++c) {
-    const auto log_part = [&](std::size_t k) {
-      return kernels_[k].log_peak + std::log(counts[k].near[c] / counts[k].pairs[c]);
-    };
-    result[c] = log_sum(log_part(0), log_part(1)) - std::log(2.0);
+    result[c] = log_peak_ + std::log(count.near[c] / count.pairs[c]);
   }
   return result;
 }

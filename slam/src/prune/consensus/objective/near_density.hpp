@@ -27,10 +27,10 @@ std::size_t proposal_class(const ReducedGraph<Pose>& graph, Index loop) {
 /// loop that says that two poses are near which the map has far from each other, however much it
 /// may err, little is left.
 ///
-/// f is a kernel around the median, with even odds as wide as loops differ (they are often much
-/// alike, those of false loops above all) or wider by a step of odometry: the nearest pose to one
-/// is up to that far away. It is normal where near pairs are counted; how much nearer h is than z,
-/// of which one may lie far out, is told by Student's t.
+/// f is a kernel around the median, as wide as loops differ, by their stated errors, and by half a
+/// step of odometry either way: however well places are told apart, the nearest pose to one is up
+/// to that far away. It is normal where near pairs are counted; how much nearer h is than z, of
+/// which one may lie far out, is told by Student's t.
 template <class Pose>
 class NearDensity {
  public:
@@ -55,16 +55,8 @@ class NearDensity {
     Pose T_node_vertex;
   };
 
-  /// One of the two distributions around the median.
-  struct Kernel {
-    Tangent deviation;
-    double log_peak = 0.0;
-    double over_peak(const Tangent& off) const;
-    double squared_reach() const;  ///< of translation
-  };
-
-  /// Of each class of pairs: a kernel over its peak, summed over those that are near, and how many
-  /// there are.
+  /// Of each class of pairs: the kernel over its peak, summed over those that are near, and how
+  /// many there are.
   struct Count {
     std::array<double, kProposalClasses> near;
     std::array<double, kProposalClasses> pairs;
@@ -78,12 +70,12 @@ class NearDensity {
   double log_at(const Pose& T) const;
   std::size_t class_of(std::size_t from, std::size_t to) const;
   void count_pairs(std::size_t anchor, std::array<double, kProposalClasses>& pairs) const;
-  void count_near(const Places& on, std::size_t first, std::size_t stride,
-                  std::array<Count, 2>& counts) const;
+  void count_near(const Places& on, std::size_t first, std::size_t stride, Count& count) const;
 
   Pose center_inverse_;
   typename Pose::Translation center_;
-  std::array<Kernel, 2> kernels_;  // as wide as loops differ, and wider by a step
+  Tangent deviation_;  // of the kernel
+  double log_peak_ = 0.0;
   std::vector<Place> places_;
   std::vector<Index> chain_;          // of each place
   std::vector<std::size_t> anchors_;  // places in random order
