@@ -66,8 +66,6 @@ MOVES = {
     "scales settled anew":
         ("climb/search.cpp", "void settle_anew(const Climb<Pose>& climb, "
          "std::vector<Explanation<Pose>>& found) {\n", "if ({off}) return;"),
-    "starts where most gains": ("climb/starts.cpp", "gaining_starts(Climb<Pose>& climb) {\n",
-                                "if ({off}) return {{}};"),
 }
 STARTS = ["as stated", "odometry x 100", "loops x 0.01", "both x 0.01"]
 FLAGS = {"window 5": ["--window", 5], "window 80": ["--window", 80],

@@ -74,15 +74,6 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
 }
 
 template <class Pose>
-void Assessment<Pose>::weigh_at(Explanation<Pose>& now, const CovarianceScale& scale) {
-  for (auto& covariance : found_.covariances) covariance *= scale.odometry / now.scale.odometry;
-  now.scale = scale;
-  found_.mixture = now.mixture();
-  find_redundancy(now);
-  weigh(now);
-}
-
-template <class Pose>
 void Assessment<Pose>::find_nearness(const Explanation<Pose>& now) {
   nearness_found_.assessments += 1.0;
   const std::size_t accepted = now.accepted_count();

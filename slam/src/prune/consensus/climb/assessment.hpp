@@ -46,10 +46,6 @@ class Assessment {
   /// @throws NumericalError if the normal equations break down
   bool assess(Explanation<Pose>& now, double least = -std::numeric_limits<double>::infinity());
 
-  /// Weighs the loops anew where `now`, in which none is accepted, has these scales: poses are the
-  /// same at any. The evidence is left as it is.
-  void weigh_at(Explanation<Pose>& now, const CovarianceScale& scale);
-
   /// What the next assessment starts from, beside the explanation.
   struct Findings {
     Shapes<Pose> shapes;

@@ -133,19 +133,6 @@ const Explanation<Pose>* Climb<Pose>::nothing(double least) {
   return nothing_ && nothing_->evidence >= least ? &*nothing_ : nullptr;
 }
 
-template <class Pose>
-std::vector<double> Climb<Pose>::first_gains(const std::vector<CovarianceScale>& scales) {
-  start(none_at({}));
-  std::vector<double> gains;
-  for (const auto& scale : scales) {
-    assessment_.weigh_at(now_, scale);
-    predict_runs();
-    gains.push_back(0.0);
-    for (const Group& group : gaining_groups()) gains.back() += group.gain;
-  }
-  return gains;
-}
-
 // That of an earlier climb which passed here, which explains the same loops better, or which holds
 // all loops of this one and explains them better, by its scales and map too where those were
 // `learnt` from them; but not where this climb can learn better ones.

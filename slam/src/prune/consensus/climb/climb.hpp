@@ -73,10 +73,6 @@ class Climb {
   /// where the evidence of that is below `least`, which takes less time to tell.
   const Explanation<Pose>* nothing(double least = -std::numeric_limits<double>::infinity());
 
-  /// What all groups of loops that gain by themselves would gain, of nothing accepted, at each of
-  /// these scales.
-  std::vector<double> first_gains(const std::vector<CovarianceScale>& scales);
-
   /// What the climbs did, and whether all ended.
   const std::vector<ConsensusMove>& moves() const noexcept { return moves_; }
   bool settled() const noexcept { return settled_; }

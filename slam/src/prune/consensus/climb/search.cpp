@@ -109,9 +109,6 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
     climb_from_each_start(calibrate, try_from);
     if (calibrate && depth.to_the_last && at_once && !astray()) settle_anew(climb, found);
   }
-  if (calibrate && astray()) {
-    for (const auto& start : gaining_starts(climb)) unless_it_breaks_down(try_from, start);
-  }
   if (const auto* none = nothing()) found.push_back(*none);
   keep_peaks(found);
   return found;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "isotherm/base/error.hpp"
 #include "prune/consensus/climb/climb.hpp"
 
@@ -25,11 +23,5 @@ void climb_from_each_start(bool calibrate, Function&& climb_from) {
     if (!calibrate) break;
   }
 }
-
-/// Where none of kStarts leads anywhere: factors of a grid over what is believed of them where more
-/// gains from nothing than at those around, the most first. Of stated covariances far from true no
-/// loop agrees with the next, and no climb begins.
-template <class Pose>
-std::vector<CovarianceScale> gaining_starts(Climb<Pose>& climb);
 
 }  // namespace isotherm::slam::detail
