@@ -42,8 +42,7 @@ class Search {
   }
 
  private:
-  Placement started(const std::vector<bool>& pairs, Errors errors) {
-    errors_ = errors;
+  Placement started(const std::vector<bool>& pairs, Errors errors) const {
     return in_frame(map_by_paths({free_, pairs, task_.gate, task_.options}, errors));
   }
 
@@ -65,7 +64,7 @@ class Search {
   }
 
   Placement heated(Placement map) const {
-    unfold(task_, best_errors_, map);
+    unfold(task_, Errors::too_long, map);
     return map;
   }
 
@@ -103,7 +102,6 @@ class Search {
     if (reached > worth_) {
       std::swap(map, best_);
       worth_ = reached;
-      best_errors_ = errors_;
     }
     if (before > -std::numeric_limits<double>::infinity()) {
       auto both = best_;
@@ -157,9 +155,7 @@ class Search {
   Placement best_;
   Placement redrawn_;  // the best map when regions were drawn last
   double worth_ = -std::numeric_limits<double>::infinity();
-  double unfolded_ = worth_;          // when folds were opened last
-  Errors errors_ = Errors::any;       // of the last start
-  Errors best_errors_ = Errors::any;  // of that of the best map
+  double unfolded_ = worth_;  // when folds were opened last
 };
 
 }  // namespace
