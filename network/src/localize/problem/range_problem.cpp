@@ -17,33 +17,41 @@ namespace isotherm::network::detail {
 namespace {
 
 void merge_pairs(RangeProblem& problem) {
-  std::map<std::pair<Index, Index>, Index> number_of;
-  std::vector<std::vector<double>> distances;
-  std::vector<std::vector<double>> sigmas;
-  for (std::size_t k = 0; k < problem.ranges.size(); ++k) {
-    const auto& range = problem.ranges[k];
-    const auto [entry, added] = number_of.try_emplace(std::minmax(range.from, range.to),
-                                                      static_cast<Index>(problem.pairs.size()));
-    if (added) {
-      problem.pairs.push_back({range.from, range.to});
-      distances.emplace_back();
-      sigmas.emplace_back();
-    }
-    problem.pair_of.push_back(entry->second);
-    distances[entry->second].push_back(range.distance);
-    sigmas[entry->second].push_back(problem.sigmas[k]);
-  }
+  auto groups = group_by_pair(problem.ranges);
   std::vector<spectral::WeightedEdge> edges;
-  for (std::size_t p = 0; p < problem.pairs.size(); ++p) {
-    auto& pair = problem.pairs[p];
-    pair.distance = lower_median(distances[p]);
-    pair.sigma = lower_median(sigmas[p]);
-    edges.push_back({pair.from, pair.to, 1.0});
+  for (const auto& group : groups.ranges) {
+    const auto& first = problem.ranges[group.front()];
+    const double distance =
+        median_over(group, [&](std::size_t k) { return problem.ranges[k].distance; });
+    const double sigma = median_over(group, [&](std::size_t k) { return problem.sigmas[k]; });
+    problem.pairs.push_back({first.from, first.to, distance, sigma});
+    edges.push_back({first.from, first.to, 1.0});
   }
+  problem.pair_of = std::move(groups.pair_of);
   problem.pair_graph = spectral::WeightedGraph(problem.nodes, std::move(edges));
 }
 
 }  // namespace
+
+PairGroups group_by_pair(const std::vector<RangeMeasurement>& ranges) {
+  PairGroups groups;
+  std::map<std::pair<Index, Index>, Index> number_of;
+  for (std::size_t k = 0; k < ranges.size(); ++k) {
+    const auto [entry, added] = number_of.try_emplace(std::minmax(ranges[k].from, ranges[k].to),
+                                                      static_cast<Index>(groups.ranges.size()));
+    if (added) groups.ranges.emplace_back();
+    groups.pair_of.push_back(entry->second);
+    groups.ranges[entry->second].push_back(k);
+  }
+  return groups;
+}
+
+double median_over(const std::vector<std::size_t>& numbers,
+                   const std::function<double(std::size_t)>& value_of) {
+  std::vector<double> values;
+  for (const std::size_t k : numbers) values.push_back(value_of(k));
+  return lower_median(std::move(values));
+}
 
 void check(const RangeNetwork& network) {
   const auto fail = [](std::size_t k, const std::string& problem) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -22,6 +23,14 @@ struct RangePair {
   double distance = 0.0;  ///< median
   double sigma = 0.0;
 };
+
+/// Ranges by the two nodes that they are between.
+struct PairGroups {
+  std::vector<Index> pair_of;                    ///< range -> pair
+  std::vector<std::vector<std::size_t>> ranges;  ///< of each pair, by order of first appearance
+};
+
+PairGroups group_by_pair(const std::vector<RangeMeasurement>& ranges);
 
 /// A network as the stages of localisation see it.
 struct RangeProblem {
@@ -115,5 +124,9 @@ bool anchors_span_space(const RangeProblem& problem, const Placement& placement)
 
 /// The middle one of `values` (the lower of two); NaN if there are none.
 double lower_median(std::vector<double> values);
+
+/// That of the values of some numbers.
+double median_over(const std::vector<std::size_t>& numbers,
+                   const std::function<double(std::size_t)>& value_of);
 
 }  // namespace isotherm::network::detail

@@ -1,8 +1,6 @@
 #include "localize/problem/repeats.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "localize/problem/range_problem.hpp"
@@ -10,37 +8,22 @@
 namespace isotherm::network::detail {
 
 MergedNetwork merge_repeats(const RangeNetwork& network) {
-  MergedNetwork merged;
-  merged.network = network;
-  auto& pairs = merged.network.ranges;
-  pairs.clear();
-  std::map<std::pair<Index, Index>, Index> number_of;
-  std::vector<std::vector<double>> distances;
-  std::vector<std::vector<double>> variances;
-  for (const auto& range : network.ranges) {
-    const auto [entry, added] =
-        number_of.try_emplace(std::minmax(range.from, range.to), static_cast<Index>(pairs.size()));
-    if (added) {
-      pairs.push_back(range);
-      distances.emplace_back();
-      variances.emplace_back();
-    }
-    merged.pair_of.push_back(entry->second);
-    distances[entry->second].push_back(range.distance);
-    variances[entry->second].push_back(range.variance);
-  }
-  std::vector<std::vector<double>> sizes(pairs.size());
-  for (std::size_t p = 0; p < pairs.size(); ++p) {
-    pairs[p].distance = lower_median(distances[p]);
-    pairs[p].variance = lower_median(variances[p]);
-  }
-  for (std::size_t k = 0; k < network.ranges.size(); ++k) {
-    const auto p = static_cast<std::size_t>(merged.pair_of[k]);
-    merged.deviations.push_back(network.ranges[k].distance - pairs[p].distance);
-    sizes[p].push_back(std::abs(merged.deviations.back()));
-  }
   constexpr double kMedianOfNormal = 0.6745;
-  for (auto& pair : sizes) merged.spreads.push_back(lower_median(pair) / kMedianOfNormal);
+  const auto& ranges = network.ranges;
+  auto groups = group_by_pair(ranges);
+  MergedNetwork merged{.network = network, .deviations = std::vector<double>(ranges.size())};
+  merged.network.ranges.clear();
+  for (const auto& group : groups.ranges) {
+    RangeMeasurement pair = ranges[group.front()];
+    pair.distance = median_over(group, [&](std::size_t k) { return ranges[k].distance; });
+    pair.variance = median_over(group, [&](std::size_t k) { return ranges[k].variance; });
+    for (const std::size_t k : group) merged.deviations[k] = ranges[k].distance - pair.distance;
+    const double typical =
+        median_over(group, [&](std::size_t k) { return std::abs(merged.deviations[k]); });
+    merged.spreads.push_back(typical / kMedianOfNormal);
+    merged.network.ranges.push_back(pair);
+  }
+  merged.pair_of = std::move(groups.pair_of);
   return merged;
 }
 
