@@ -26,26 +26,25 @@ constexpr std::size_t kMotions = 3;
 class LooseSearch {
  public:
   LooseSearch(const MapTask& task, const Placement& placement)
-      : task_(task),
-        problem_(task.problem),
-        placement_(placement),
+      : problem_(task.problem),
         most_(largest_part(problem_, placement)),
         seen_(problem_.nodes, false) {
     for (std::size_t p = 0; p < problem_.pairs.size(); ++p) {
       const auto& pair = problem_.pairs[p];
-      fits_.push_back(task.trusted[p] && is_placed(placement, pair) && task.fits(placement, pair));
+      const bool tells = task.trusted[p] && is_placed(placement, pair);
+      fits_.push_back(tells && task.fits(placement, pair));
+      if (tells && !fits_.back()) unfit_.push_back(pair);
     }
   }
 
   std::vector<Nodes> parts() {
     std::vector<Nodes> found;
-    task_.visit_pairs(placement_, [&](const RangePair& pair) {
-      if (task_.fits(placement_, pair)) return;
+    for (const auto& pair : unfit_) {
       for (const Index end : {pair.from, pair.to}) {
         if (seen_[end]) continue;
         if (auto part = part_with(end)) found.push_back(std::move(*part));
       }
-    });
+    }
     return found;
   }
 
@@ -83,12 +82,11 @@ class LooseSearch {
     return part;
   }
 
-  const MapTask& task_;
   const RangeProblem& problem_;
-  const Placement& placement_;
-  Index most_;              // nodes of a part
-  std::vector<bool> fits_;  // pairs
-  std::vector<bool> seen_;  // nodes of parts that were grown
+  Index most_;                    // nodes of a part
+  std::vector<bool> fits_;        // pairs
+  std::vector<RangePair> unfit_;  // the trusted ones that do not, of placed nodes
+  std::vector<bool> seen_;        // nodes of parts that were grown
 };
 
 // A part beside what it is tied to.
