@@ -173,10 +173,11 @@ Misfit Assessment<Pose>::misfit(const Explanation<Pose>& now, Index loop) const 
   const auto& link = graph().loops[loop];
   const typename Pose::Tangent r = estimate_.residual(link);
   const Matrix expected = r * r.transpose() + uncertainty(now, loop);
-  return {.chi2 = link.information.cwiseProduct(expected).sum() / now.scale.loops,
-          .stated = stated_information(loop).cwiseProduct(expected).sum(),
-          .dof = Pose::kDof,
-          .log_stated = -Pose::kDof * std::log(now.scale.loops)};
+  return {
+      .chi2 = link.information.cwiseProduct(expected).sum() / now.scale.loops,
+      .stated = objective_.stated().reduced.loops[loop].information.cwiseProduct(expected).sum(),
+      .dof = Pose::kDof,
+      .log_stated = -Pose::kDof * std::log(now.scale.loops)};
 }
 
 // The covariance of a loop's residual, by that with the information it was held with (0 where it

@@ -70,23 +70,15 @@ class Assessment {
     return estimate_.relaxed(now.accepted, now.scale);
   }
 
+  const Objective<Pose>& objective() const noexcept { return objective_; }
+
   const Estimate<Pose>& estimate() const noexcept { return estimate_; }
 
   const ReducedGraph<Pose>& graph() const noexcept { return found_.graph->reduced; }
 
-  /// By what the file states.
-  const Matrix& stated_information(Index loop) const {
-    return objective_.stated().reduced.loops[loop].information;
-  }
-
   /// How much of each coordinate of an accepted loop is left to tell how accurate it is:
   /// diag(I - Omega P), Omega its mean information, P the residual's covariance.
   typename Pose::Tangent redundancy(const Explanation<Pose>& now, Index loop) const;
-
-  /// See Objective.
-  const typename Pose::Tangent& most_odometry() const noexcept {
-    return objective_.most_odometry();
-  }
 
   /// log of the density that a loop's is held against.
   double log_alternative(Index loop) const {

@@ -114,9 +114,9 @@ Residuals<Pose> residuals_of(const Assessment<Pose>& assessment,
     const auto loop = static_cast<Index>(k);
     const auto& link = assessment.graph().loops[k];
     if (!explanation.accepted[k] || link.a == link.b) continue;
+    const auto& stated = assessment.objective().stated().reduced.loops[k];
     const typename Pose::Tangent r = assessment.estimate().residual(link);
-    residuals.push_back({r.cwiseProduct(link.information * r),
-                         r.dot(assessment.stated_information(loop) * r),
+    residuals.push_back({r.cwiseProduct(link.information * r), r.dot(stated.information * r),
                          assessment.redundancy(explanation, loop), explanation.weights[k]});
   }
   return residuals;
@@ -258,7 +258,8 @@ Lesson<Pose> learn(const Assessment<Pose>& assessment, const Explanation<Pose>& 
   const ScaleShares& shares = explanation.shares;
   const double before =
       log_likelihood<Pose>({explanation.scale.loops, explanation.shapes.loops, shares}, residuals);
-  const Lesson<Pose> odometry = of_odometry(explanation, assessment.most_odometry(), same_shapes);
+  const Lesson<Pose> odometry =
+      of_odometry(explanation, assessment.objective().most_odometry(), same_shapes);
   Lesson<Pose> best = odometry;
   for (const ScaleShift& start :
        {ScaleShift{1.0, shares}, wider_most(shares), sharper_most(shares)}) {

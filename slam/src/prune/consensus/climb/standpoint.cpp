@@ -57,6 +57,9 @@ Standpoint<Pose> carry(const Explanation<Pose>& before,
                         {.shapes = before.shapes, .mixture = found.mixture}};
   auto& [explanation, findings] = next;
   explanation.redundancy = before.redundancy;
+  const double more = static_cast<double>(known.loops.size()) /
+                      static_cast<double>(std::max<std::size_t>(before.accepted.size(), 1));
+  for (double& share : explanation.shares.loops) share *= more;
   findings.graph = std::make_shared<ScaledGraph<Pose>>(
       before.shapes == Shapes<Pose>{} ? objective.stated() : objective.scaled(before.shapes));
   for (const auto& loop : known.loops) {

@@ -22,8 +22,8 @@ struct KnownBefore {
 };
 
 /// What explained some of the loops, for all of `objective`: new ones are not accepted; scales and
-/// weights are those that were learnt. Vertices that lay on no map follow odometry. The density of
-/// near pairs is to be found anew.
+/// weights are those that were learnt, and as large a share of all is of each. Vertices that lay on
+/// no map follow odometry. The density of near pairs is to be found anew.
 template <class Pose>
 Standpoint<Pose> carry(const Explanation<Pose>& before,
                        const typename Assessment<Pose>::Findings& found,
