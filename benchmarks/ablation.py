@@ -54,6 +54,7 @@ MOVES = {
          "if (trial == Trial::lesson_of_scales && {off}) continue;"),
     "most loops called wider or sharper":
         ("climb/learn.cpp", "sharper_most(shares)}) {\n", "if (start.factor != 1.0 && {off}) continue;"),
+    "far starts": ("climb/search.cpp", ": std::span(kStarts).subspan(kStartsAlways)) {\n", "if ({off}) break;"),
     "loops weighed by the others": (CLIMB, "::weigh_by_others() {\n", "if ({off}) return false;"),
     "the look afar": (CLIMB, "::weigh_afar() {\n", "if ({off}) return false;"),
     "all accepted that are not false beyond doubt":
@@ -92,7 +93,7 @@ def instrument(tree):
     for k, (source, behind, left_out) in enumerate(MOVES.values()):
         text = behind + left_out.format(off=f"is_off({k})") + "\n"
         replace(room / source, [(behind, text)])
-    loop = "for (const auto& [odometry, loops] : kStarts) {"
+    loop = "for (const auto& [odometry, loops] : std::span(kStarts).first(kStartsAlways)) {"
     replace(room / "climb/starts.hpp",
             [(loop, f'int start = 0;\n  {loop}\n'
                     f'    const char* without = std::getenv("{PREFIX}kStarts");\n'

@@ -144,6 +144,19 @@ TEST(Search, FindsNoLessThanKnowingTheLoopsWould) {
   }
 }
 
+// From the first of kStarts no loop is found true.
+TEST(Search, GoesFarWhereNoStartLeadsAnywhere) {
+  auto ring = simulate_ring({.poses = 400, .measurements = {.loops = 30}, .seed = 3}).graph;
+  for (auto& constraint : ring.constraints) {
+    constraint.information *= 100.0;
+    constraint.information(2, 2) *= 1e4;
+  }
+  const Objective<Pose2> objective(ring, edge_roles(ring), kWindow);
+  Climb<Pose2> climb(objective, kOptions, kSilent);
+  const auto found = search(climb);
+  EXPECT_EQ(found.front().accepted, std::vector<bool>(30, true));
+}
+
 // From odometry that is taken for ten times less accurate than it is, lessons alone end a thousand
 // nats below (seed 2); from loops that are taken for exact with all of them nine times worse than
 // most (seed 3).

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "prune/consensus/climb/report.hpp"
 #include "prune/consensus/climb/sample.hpp"
@@ -108,6 +109,10 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   if (astray()) {
     climb_from_each_start(calibrate, try_from);
     if (calibrate && depth.to_the_last && at_once && !astray()) settle_anew(climb, found);
+  }
+  for (const auto& [odometry, loops] : std::span(kStarts).subspan(kStartsAlways)) {
+    if (!calibrate || !astray()) break;
+    unless_it_breaks_down(try_from, CovarianceScale{odometry, loops});
   }
   if (const auto* none = nothing()) found.push_back(*none);
   keep_peaks(found);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "isotherm/base/error.hpp"
 #include "prune/consensus/climb/climb.hpp"
 
@@ -15,10 +17,10 @@ void unless_it_breaks_down(Function&& climb_from, const Start& start) {
   }
 }
 
-/// Calls `climb_from` with each of kStarts in turn, and without `calibrate` with the file's alone.
+/// Calls `climb_from` with the first of kStarts in turn, without `calibrate` with the file's alone.
 template <class Function>
 void climb_from_each_start(bool calibrate, Function&& climb_from) {
-  for (const auto& [odometry, loops] : kStarts) {
+  for (const auto& [odometry, loops] : std::span(kStarts).first(kStartsAlways)) {
     unless_it_breaks_down(climb_from, CovarianceScale{odometry, loops});
     if (!calibrate) break;
   }
