@@ -7,8 +7,8 @@
 #   --rows-so-far  writes the page from the rows that are there, and measures nothing
 #   data folder    default $ISOTHERM_DATA or ../shared/data
 # ISOTHERM names the command to measure; without it, the release preset is built.
-# The comparison with GNC needs GTSAM's Python package (PYTHON, or .venv of
-# scripts/python-env.sh).
+# The comparison with GTSAM and g2o needs their Python packages: see consensus_peers.py (PYTHON names
+# the interpreter; default .venv/bin/python).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -174,7 +174,7 @@ drift_row() {
   echo
 }
 
-gnc_rows() { "$python" benchmarks/consensus_gnc.py "$isotherm" "$data"; }
+peer_rows() { "$python" benchmarks/consensus_peers.py "$isotherm" "$data"; }
 
 figures='| graph | precision | recall | true pruned | false not pruned | ambiguous | seconds |
 |---|---|---|---|---|---|---|'
@@ -220,10 +220,11 @@ HEAD
       for seed in $seeds; do cached "drift-$drift-$group-$seed" drift_row "$drift" "$group" "$seed"; done
     done
   done
-  printf '\n## CPU time beside GTSAM\n\n'
-  printf 'Half of the loops false (vertigo, random, seed 1), `benchmarks/consensus_gnc.py`: the whole\n'
-  printf 'command on one thread beside `GncLMOptimizer` without reading, in the same run.\n\n'
-  cached gnc gnc_rows
+  printf '\n## CPU time beside GTSAM and g2o\n\n'
+  printf 'Half of the loops false (vertigo, random, seed 1), `benchmarks/consensus_peers.py`: the whole\n'
+  printf 'command on one thread beside `GncLMOptimizer` and g2o with `RobustKernelDCS`, both from odometry\n'
+  printf 'and without reading, in the same run. Ratios are of their seconds to those of consensus.\n\n'
+  cached peers peer_rows
   printf '\n## Size: cities with as many candidates as poses, half of them false\n\n%s\n' "$figures"
   for poses in 10000 20000 50000 100000; do cached "large-$poses" large_row "$poses"; done
   printf '\n## Injected false loops: five types, both styles\n\n'
