@@ -532,9 +532,9 @@ Written by `benchmarks/networks.py`:
 measured piece by piece (`--sizes`, `--budget`) in builds of the preset `release`, on two cores
 that had other work to do: seconds are wall-clock and say little. RMSD counts the nodes that
 a method places, anchors left out, in sides of the unit square. Sizes, rows and cells that are
-missing were not measured. Most are of a build that tried no fold of a part that is tied to an anchor;
-networks with nodes far off, but of 10,000 nodes with 10 % of noise, were measured anew since, and of 46
-others one or two nodes changed. *Least squares* and *MDS-MAP* of 10,000 nodes were measured before.
+missing were not measured. Networks of 100 nodes are of the present build. Most others are of one that tried no
+fold of a part that is tied to an anchor; those with nodes far off were measured anew since, but that of 10,000
+nodes with 10 % of noise and biased ranges, and of 46 others one or two nodes changed. *Least squares* and *MDS-MAP* of 10,000 nodes were measured before.
 
 ## Simulated networks
 
