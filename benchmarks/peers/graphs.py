@@ -44,7 +44,8 @@ class Graphs:
         # Labelled by translation alone, as for the peers' figures: 105 wrong of 197.
         labels = self.labelled("Bovisa04", graph, truth, "--max-translation-error", "5",
                                "--max-rotation-error", "3.15")
-        return LabelledGraph("Bovisa04", graph, labels, (*truth, "--max-gap", "0.5"))
+        return LabelledGraph("Bovisa04", graph, labels,
+                             (*truth, "--max-gap", "0.5", "--partial"))
 
     def injected(self):
         planar, spatial = self.data / "posegraph2d", self.data / "posegraph3d"
