@@ -54,7 +54,8 @@ MOVES = {
          "if (trial == Trial::lesson_of_scales && {off}) continue;"),
     "most loops called wider or sharper":
         ("climb/learn.cpp", "sharper_most(shares)}) {\n", "if (start.factor != 1.0 && {off}) continue;"),
-    "far starts": ("climb/search.cpp", ": std::span(kStarts).subspan(kStartsAlways)) {\n", "if ({off}) break;"),
+    "far starts": ("climb/search.cpp", ": std::span(kStarts).subspan(kStartsAlways)) {\n",
+                   "if ({off}) break;"),
     "loops weighed by the others": (CLIMB, "::weigh_by_others() {\n", "if ({off}) return false;"),
     "the look afar": (CLIMB, "::weigh_afar() {\n", "if ({off}) return false;"),
     "all accepted that are not false beyond doubt":

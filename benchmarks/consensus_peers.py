@@ -64,17 +64,18 @@ def odometry_start(factors, pose):
 
 
 def read(path):
+    """Whether a file is in three dimensions, its graph, its factors, and odometry_start()."""
     is_3d = "EDGE_SE3" in path.read_text()
     graph, _ = gtsam.readG2o(str(path), is_3d)
-    return is_3d, graph, [graph.at(k) for k in range(graph.size())]
+    factors = [graph.at(k) for k in range(graph.size())]
+    return is_3d, graph, factors, *odometry_start(factors, gtsam.Pose3 if is_3d else gtsam.Pose2)
 
 
 def run_gnc(path):
     """The CPU time of GNC on a file, and the number of edges that it prunes."""
-    is_3d, graph, factors = read(path)
-    pose, dof = (gtsam.Pose3, 6) if is_3d else (gtsam.Pose2, 3)
-    prior = gtsam.PriorFactorPose3 if is_3d else gtsam.PriorFactorPose2
-    values, known = odometry_start(factors, pose)
+    is_3d, graph, factors, values, known = read(path)
+    prior, pose, dof = ((gtsam.PriorFactorPose3, gtsam.Pose3, 6) if is_3d
+                        else (gtsam.PriorFactorPose2, gtsam.Pose2, 3))
     graph.add(prior(0, pose(), gtsam.noiseModel.Isotropic.Sigma(dof, 1e-3)))
     known.append(graph.size() - 1)
     params = gtsam.GncLMParams(gtsam.LevenbergMarquardtParams())
@@ -105,8 +106,7 @@ def g2o_information(factor, is_3d):
 
 def g2o_problem(path):
     """The optimiser at the poses of odometry, and the loops with their kernels."""
-    is_3d, _, factors = read(path)
-    values, known = odometry_start(factors, gtsam.Pose3 if is_3d else gtsam.Pose2)
+    is_3d, _, factors, values, known = read(path)
     solver = (g2o.BlockSolverSE3(g2o.LinearSolverEigenSE3()) if is_3d
               else g2o.BlockSolverX(g2o.LinearSolverEigenX()))
     optimizer = g2o.SparseOptimizer()
