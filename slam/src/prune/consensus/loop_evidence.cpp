@@ -37,11 +37,13 @@ double highest_evidence(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                         const RunContext& run) {
   const detail::Objective<Pose> objective(graph, roles, options.window, options.calibrate);
   detail::Climb<Pose> climb(objective, options, run);
-  double highest = -std::numeric_limits<double>::infinity();
+  std::vector<detail::Explanation<Pose>> found;
   detail::climb_from_each_start(options.calibrate, [&](const auto& start) {
-    highest = std::max(highest, climb.settled_on(accepted, start).evidence);
+    found.push_back(climb.settled_on(accepted, start));
   });
-  return highest;
+  const auto best = std::ranges::max_element(found, {}, &detail::Explanation<Pose>::evidence);
+  if (best == found.end()) return -std::numeric_limits<double>::infinity();
+  return options.calibrate ? settled_anew(climb, *best).evidence : best->evidence;
 }
 
 }  // namespace

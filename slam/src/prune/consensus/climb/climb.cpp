@@ -110,6 +110,19 @@ Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
   start(none_at(start_scale));
   for (std::size_t k = 0; k < accepted.size(); ++k) dropped_[k] = !accepted[k];
   grow();
+  return settle(accepted);
+}
+
+template <class Pose>
+Explanation<Pose> Climb<Pose>::settled_near(const Explanation<Pose>& found,
+                                            const CovarianceScale& scale) {
+  start(none_at(scale));
+  assessment_.stand_on(found.layout);
+  return settle(found.accepted);
+}
+
+template <class Pose>
+const Explanation<Pose>& Climb<Pose>::settle(const std::vector<bool>& accepted) {
   now_.accepted = accepted;
   assess();
   while (learn_more_than(0.0) || weigh_anew()) {

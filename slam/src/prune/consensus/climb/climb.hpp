@@ -69,6 +69,9 @@ class Climb {
   /// What explains best that exactly these loops are true, from `start`.
   Explanation<Pose> settled_on(const std::vector<bool>& accepted, const CovarianceScale& start);
 
+  /// The same of the loops that were found, from the poses that were found with them.
+  Explanation<Pose> settled_near(const Explanation<Pose>& found, const CovarianceScale& start);
+
   /// Nothing accepted, the covariances as stated, odometry's no larger than its steps vary; none
   /// where the evidence of that is below `least`, which takes less time to tell.
   const Explanation<Pose>* nothing(double least = -std::numeric_limits<double>::infinity());
@@ -107,6 +110,7 @@ class Climb {
   const Explanation<Pose>* peak_ahead(bool learnt);
   const Explanation<Pose>& lead_to(const Explanation<Pose>& peak);
   bool is_here(const Passed& passed) const;
+  const Explanation<Pose>& settle(const std::vector<bool>& accepted);
   bool outdoes(double evidence);
   const Explanation<Pose>* grow();
   bool move();

@@ -28,12 +28,17 @@ void keep_peaks(std::vector<Explanation<Pose>>& found) {
   found = std::move(peaks);
 }
 
+template <class Pose>
+const Explanation<Pose>& best_of(const std::vector<Explanation<Pose>>& found) {
+  return *std::ranges::max_element(found, {}, &Explanation<Pose>::evidence);
+}
+
 // Evidence of what is not so much worse than the best of these that it changes no probability.
 template <class Pose>
 double least_that_tells(const std::vector<Explanation<Pose>>& found) {
   constexpr double kNoDigit = 40.0;  // nats: beyond the last of a double
-  const auto best = std::ranges::max_element(found, {}, &Explanation<Pose>::evidence);
-  return best == found.end() ? -std::numeric_limits<double>::infinity() : best->evidence - kNoDigit;
+  return found.empty() ? -std::numeric_limits<double>::infinity()
+                       : best_of(found).evidence - kNoDigit;
 }
 
 // As numbers of a sample say which loops of all those are.
@@ -75,15 +80,16 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole,
   return standpoints;
 }
 
-// Scales of the loops that were found may have more than one peak: sought from each start, by
-// climbs that no other loops or peaks lead astray.
+// The loops that were found, better explained: by a climb from sharp scales that no other loops or
+// peaks lead astray, and from scales on either side.
 template <class Pose>
-void settle_anew(const Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
-  const Explanation<Pose> best = *std::ranges::max_element(found, {}, &Explanation<Pose>::evidence);
+void settle_anew(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
+  const auto& [odometry, loops] = kStarts[kStartsAlways - 1];
+  const std::vector<bool> accepted = best_of(found).accepted;
   Climb<Pose> afresh = climb.on(climb.objective());
-  climb_from_each_start(true, [&](const CovarianceScale& scale) {
-    found.push_back(afresh.settled_on(best.accepted, scale));
-  });
+  const auto grow = [&](const auto& start) { found.push_back(afresh.settled_on(accepted, start)); };
+  unless_it_breaks_down(grow, CovarianceScale{odometry, loops});
+  found.push_back(settled_anew(climb, best_of(found)));
 }
 
 }  // namespace

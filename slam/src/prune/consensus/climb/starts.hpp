@@ -1,9 +1,13 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <span>
+#include <utility>
 
 #include "isotherm/base/error.hpp"
 #include "prune/consensus/climb/climb.hpp"
+#include "prune/consensus/objective/scale_prior.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -24,6 +28,27 @@ void climb_from_each_start(bool calibrate, Function&& climb_from) {
     unless_it_breaks_down(climb_from, CovarianceScale{odometry, loops});
     if (!calibrate) break;
   }
+}
+
+/// The best of these loops from the poses found with them, and from loops a deviation of their
+/// prior more and less accurate than found, as long as it rises: scales may have more than one
+/// peak, between which lessons do not lead, and a loop that has drawn the map to itself looks
+/// accurate there.
+template <class Pose>
+Explanation<Pose> settled_anew(Climb<Pose>& climb, Explanation<Pose> found) {
+  for (bool rises = true; std::exchange(rises, false);) {
+    for (const double change : {-kScaleDeviation, kScaleDeviation}) {
+      const double log_scale = std::log(found.scale.loops) + change;
+      const double loops = std::exp(std::clamp(log_scale, -kMostScale, kMostScale));
+      const auto settle = [&](const CovarianceScale& start) {
+        auto other = climb.settled_near(found, start);
+        rises = rises || other.evidence > found.evidence + kBetter;
+        if (other.evidence > found.evidence) found = std::move(other);
+      };
+      unless_it_breaks_down(settle, CovarianceScale{found.scale.odometry, loops});
+    }
+  }
+  return found;
 }
 
 }  // namespace isotherm::slam::detail
