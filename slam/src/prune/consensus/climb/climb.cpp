@@ -296,9 +296,8 @@ bool Climb<Pose>::weigh_by_others() {
 // accurate as the worst is to explain them better.
 template <class Pose>
 bool Climb<Pose>::weigh_afar() {
-  const double redundancy = now_.redundancy.odometry.sum() + now_.redundancy.loops.sum();
   const auto [factor, shares] = all_as_worst(now_.shares);
-  if (!options_.calibrate || !looks_afar_ || redundancy < 1.0) return false;  // nothing tells
+  if (!options_.calibrate || !looks_afar_ || !now_.tells_of_scales()) return false;
   const Lesson<Pose> wider{{now_.scale.odometry, now_.scale.loops * factor}, now_.shapes, shares};
   return std::log(wider.scale.loops) < kMostScale && try_with(scales_of(wider), {.learning = true});
 }

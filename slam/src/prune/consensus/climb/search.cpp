@@ -85,6 +85,7 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole,
 template <class Pose>
 void settle_anew(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
   const auto& [odometry, loops] = kStarts[kStartsAlways - 1];
+  if (!best_of(found).tells_of_scales()) return;
   const std::vector<bool> accepted = best_of(found).accepted;
   Climb<Pose> afresh = climb.on(climb.objective());
   const auto grow = [&](const auto& start) { found.push_back(afresh.settled_on(accepted, start)); };

@@ -45,6 +45,9 @@ struct Explanation {
     return static_cast<std::size_t>(std::ranges::count(accepted, true));
   }
 
+  /// Whether any number measured is left to tell how accurate they are.
+  bool tells_of_scales() const { return redundancy.odometry.sum() + redundancy.loops.sum() >= 1.0; }
+
   /// What is expected of how accurate the next loop is.
   ScaleMixture mixture() const {
     return expected_mixture(scale.loops, shares, shapes.loops.minCoeff());
