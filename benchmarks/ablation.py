@@ -69,7 +69,7 @@ MOVES = {
         ("climb/search.cpp", "void settle_anew(Climb<Pose>& climb, "
          "std::vector<Explanation<Pose>>& found) {\n", "if ({off}) return;"),
 }
-STARTS = ["as stated", "loops x 0.01", "both x 0.01"]
+STARTS = ["as stated", "odometry x 100", "loops x 0.01", "both x 0.01"]
 FLAGS = {"window 5": ["--window", 5], "window 80": ["--window", 80],
          "scales as stated": ["--no-calibrate"]}
 
@@ -160,7 +160,7 @@ def page(base, rows, cell_count):
         lines += [line_of(f"`{constant.name}`", constant.meaning, constant.value, f"{value:g}",
                           rows[f"{constant.name}={value:g}"], base, not model)
                   for value in constant.tried if f"{constant.name}={value:g}" in rows]
-    lines += [line_of("`kStarts`", "scales that climbs start from", "three", f"without {name}",
+    lines += [line_of("`kStarts`", "scales that climbs start from", "four", f"without {name}",
                       rows[f"kStarts={k}"], base, True)
               for k, name in enumerate(STARTS) if f"kStarts={k}" in rows]
     lines += [line_of("move", name, "made", "not", rows[f"kMoves={k}"], base, True)

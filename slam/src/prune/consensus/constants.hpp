@@ -38,18 +38,18 @@ inline constexpr std::size_t kFewLoops = 5;
 
 /// Factors on the stated covariances of odometry and of loops to start from. What is true agrees
 /// best: a climb that starts from sharper loops than stated is not drawn to false ones first. The
-/// first three always, the others until one leads anywhere: of errors that are all stated a hundred
+/// first four always, the others until one leads anywhere: of errors that are all stated a hundred
 /// times too small no loop agrees with the next.
 inline constexpr std::array<std::array<double, 2>, 9> kStarts = {{{1.0, 1.0},
+                                                                  {100.0, 1.0},
                                                                   {1.0, 0.01},
                                                                   {0.01, 0.01},
-                                                                  {100.0, 1.0},
                                                                   {100.0, 100.0},
                                                                   {1.0, 100.0},
                                                                   {0.01, 1.0},
                                                                   {100.0, 0.01},
                                                                   {0.01, 100.0}}};
-inline constexpr std::size_t kStartsAlways = 3;
+inline constexpr std::size_t kStartsAlways = 4;
 
 /// Loops in a sample at least: half of them false, the rest tell the log of a scale to within .1.
 /// Of fewer all are looked at at once.
