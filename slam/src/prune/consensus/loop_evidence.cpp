@@ -41,9 +41,9 @@ double highest_evidence(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
   detail::climb_from_each_start(options.calibrate, [&](const auto& start) {
     found.push_back(climb.settled_on(accepted, start));
   });
-  const auto best = std::ranges::max_element(found, {}, &detail::Explanation<Pose>::evidence);
-  if (best == found.end()) return -std::numeric_limits<double>::infinity();
-  return options.calibrate ? settled_anew(climb, *best).evidence : best->evidence;
+  if (found.empty()) return -std::numeric_limits<double>::infinity();
+  const auto& best = detail::best_of(found);
+  return options.calibrate ? settled_on_either_side(climb, best).evidence : best.evidence;
 }
 
 }  // namespace

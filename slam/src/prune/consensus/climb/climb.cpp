@@ -113,6 +113,7 @@ Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
   return settle(accepted);
 }
 
+// Each loop is weighed first by what odometry says of it.
 template <class Pose>
 Explanation<Pose> Climb<Pose>::settled_near(const Explanation<Pose>& found,
                                             const CovarianceScale& scale) {

@@ -28,11 +28,6 @@ void keep_peaks(std::vector<Explanation<Pose>>& found) {
   found = std::move(peaks);
 }
 
-template <class Pose>
-const Explanation<Pose>& best_of(const std::vector<Explanation<Pose>>& found) {
-  return *std::ranges::max_element(found, {}, &Explanation<Pose>::evidence);
-}
-
 // Evidence of what is not so much worse than the best of these that it changes no probability.
 template <class Pose>
 double least_that_tells(const std::vector<Explanation<Pose>>& found) {
@@ -80,8 +75,8 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole,
   return standpoints;
 }
 
-// The loops that were found, better explained: by a climb from sharp scales that no other loops or
-// peaks lead astray, and from scales on either side.
+// The loops that were found, better explained: by a climb from the sharpest scales that all begin
+// at, which no other loops or peaks lead astray, and from scales on either side.
 template <class Pose>
 void settle_anew(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
   const auto& [odometry, loops] = kStarts[kStartsAlways - 1];
@@ -90,7 +85,7 @@ void settle_anew(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
   Climb<Pose> afresh = climb.on(climb.objective());
   const auto grow = [&](const auto& start) { found.push_back(afresh.settled_on(accepted, start)); };
   unless_it_breaks_down(grow, CovarianceScale{odometry, loops});
-  found.push_back(settled_anew(climb, best_of(found)));
+  found.push_back(settled_on_either_side(climb, best_of(found)));
 }
 
 }  // namespace

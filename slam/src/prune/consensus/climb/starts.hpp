@@ -35,7 +35,7 @@ void climb_from_each_start(bool calibrate, Function&& climb_from) {
 /// peak, between which lessons do not lead, and a loop that has drawn the map to itself looks
 /// accurate there.
 template <class Pose>
-Explanation<Pose> settled_anew(Climb<Pose>& climb, Explanation<Pose> found) {
+Explanation<Pose> settled_on_either_side(Climb<Pose>& climb, Explanation<Pose> found) {
   for (bool rises = true; std::exchange(rises, false);) {
     for (const double change : {-kScaleDeviation, kScaleDeviation}) {
       const double log_scale = std::log(found.scale.loops) + change;

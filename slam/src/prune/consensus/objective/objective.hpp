@@ -45,7 +45,7 @@ struct Explanation {
     return static_cast<std::size_t>(std::ranges::count(accepted, true));
   }
 
-  /// Whether any number measured is left to tell how accurate they are.
+  /// Whether any number measured is left to tell how accurate measurements are.
   bool tells_of_scales() const { return redundancy.odometry.sum() + redundancy.loops.sum() >= 1.0; }
 
   /// What is expected of how accurate the next loop is.
@@ -53,6 +53,12 @@ struct Explanation {
     return expected_mixture(scale.loops, shares, shapes.loops.minCoeff());
   }
 };
+
+/// That of the highest evidence; `found` must hold one.
+template <class Pose>
+const Explanation<Pose>& best_of(const std::vector<Explanation<Pose>>& found) {
+  return *std::ranges::max_element(found, {}, &Explanation<Pose>::evidence);
+}
 
 /// The log evidence of an explanation: of the accepted set A and the scales,
 ///
