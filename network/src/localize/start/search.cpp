@@ -49,7 +49,17 @@ class Search {
   void try_the_other_start() {
     consider(started(task_.trusted, Errors::too_long));
     unfold_best();
-    for (int round = 0; round < kMostRounds && consider(heated(best_)); ++round) unfold_best();
+    heat_best();
+  }
+
+  // With ranges taken for of any length and for too long in turns, until neither helps.
+  void heat_best() {
+    int vain = 0;
+    for (int round = 0; round < kMostRounds && vain < 2; ++round) {
+      const bool helps = consider(heated(round % 2 == 0 ? Errors::any : Errors::too_long));
+      if (helps) unfold_best();
+      vain = helps ? 0 : vain + 1;
+    }
   }
 
   Placement in_frame(Placement map) const {
@@ -63,8 +73,9 @@ class Search {
     return map;
   }
 
-  Placement heated(Placement map) const {
-    unfold(task_, Errors::too_long, map);
+  Placement heated(Errors errors) const {
+    auto map = best_;
+    unfold(task_, errors, map);
     return map;
   }
 
