@@ -38,7 +38,7 @@ std::vector<EdgeLabel> label_candidates(const PoseGraph<Pose>& graph, const Edge
     const auto& from = truth[constraint.from];
     const auto& to = truth[constraint.to];
     if (from && to) {
-      const Pose error = constraint.T_from_to.inverse() * (from->inverse() * *to);
+      const Pose error = constraint.T_from_to.between(from->between(*to));
       row.label = judge(error.translation().norm(), error.rotation_angle(), options);
     }
     labels.push_back(row);

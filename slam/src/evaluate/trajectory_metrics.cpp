@@ -166,9 +166,9 @@ RelativeError relative_pose_error(const PosePairs<Pose>& pairs,
   std::vector<double> translation;
   std::vector<double> rotation;
   for (std::size_t k = 0; k + delta < pairs.estimate.size(); k += stride) {
-    const Pose measured = pairs.estimate[k].inverse() * pairs.estimate[k + delta];
-    const Pose expected = pairs.truth[k].inverse() * pairs.truth[k + delta];
-    const Pose error = expected.inverse() * measured;
+    const Pose measured = pairs.estimate[k].between(pairs.estimate[k + delta]);
+    const Pose expected = pairs.truth[k].between(pairs.truth[k + delta]);
+    const Pose error = expected.between(measured);
     translation.push_back(error.translation().norm());
     rotation.push_back(error.rotation_angle());
   }
@@ -181,9 +181,9 @@ double motion_disagreement(const PosePairs<Pose>& pairs) {
   std::vector<double> shares;
   for (std::size_t k = 0; k + kStretch < pairs.estimate.size(); k += kStretch) {
     const typename Pose::Translation estimated =
-        (pairs.estimate[k].inverse() * pairs.estimate[k + kStretch]).translation();
+        pairs.estimate[k].between(pairs.estimate[k + kStretch]).translation();
     const typename Pose::Translation expected =
-        (pairs.truth[k].inverse() * pairs.truth[k + kStretch]).translation();
+        pairs.truth[k].between(pairs.truth[k + kStretch]).translation();
     const double length = std::max(estimated.norm(), expected.norm());
     if (length > 0.0) shares.push_back((estimated - expected).norm() / length);
   }

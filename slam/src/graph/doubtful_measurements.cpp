@@ -98,8 +98,7 @@ class Fits {
     for (std::size_t i = 0; i < loops_.size(); ++i) {
       const auto& loop = graph_.constraints[loops_[i]];
       const auto predicted = chain.relative(loop.from, loop.to);
-      const typename Pose::Tangent error =
-          (read_loop(loop.T_from_to).inverse() * predicted.T).log();
+      const typename Pose::Tangent error = read_loop(loop.T_from_to).between(predicted.T).log();
       const typename Pose::Matrix covariance =
           predicted.covariance + covariance_from_information<Pose::kDof>(loop.information);
       const double chi2 = error.dot(covariance.llt().solve(error));

@@ -248,7 +248,7 @@ class Summarizer {
       drift.end_distance = distance;
     }
     drift.mean_distance = sum / static_cast<double>(chained.size());
-    drift.end_rotation = (chained.back().inverse() * graph_.poses.back()).rotation_angle();
+    drift.end_rotation = chained.back().between(graph_.poses.back()).rotation_angle();
     summary_.drift = drift;
   }
 

@@ -51,6 +51,11 @@ Pose2 Pose2::inverse() const {
   return {-(rotation_matrix().transpose() * translation_), wrap_angle(-angle_)};
 }
 
+Pose2 Pose2::between(const Pose2& other) const {
+  return {rotation_matrix().transpose() * (other.translation_ - translation_),
+          wrap_angle(other.angle_ - angle_)};
+}
+
 Pose2 Pose2::operator*(const Pose2& other) const {
   return {translation_ + rotation_matrix() * other.translation_, wrap_angle(angle_ + other.angle_)};
 }

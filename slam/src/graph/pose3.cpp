@@ -94,6 +94,12 @@ Pose3 Pose3::inverse() const {
   return {-(inverse_rotation * translation_), inverse_rotation};
 }
 
+Pose3 Pose3::between(const Pose3& other) const {
+  const Eigen::Quaterniond inverse_rotation = rotation_.conjugate();
+  return {inverse_rotation * (other.translation_ - translation_),
+          (inverse_rotation * other.rotation_).normalized()};
+}
+
 Pose3 Pose3::operator*(const Pose3& other) const {
   return {translation_ + rotation_ * other.translation_,
           (rotation_ * other.rotation_).normalized()};

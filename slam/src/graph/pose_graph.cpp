@@ -69,7 +69,7 @@ PoseGraph<Pose> filter_constraints(const PoseGraph<Pose>& graph, const std::vect
 template <class Pose>
 typename Pose::Tangent residual(const Constraint<Pose>& constraint, const Pose& T_world_from,
                                 const Pose& T_world_to) {
-  return (constraint.T_from_to.inverse() * (T_world_from.inverse() * T_world_to)).log();
+  return constraint.T_from_to.between(T_world_from.between(T_world_to)).log();
 }
 
 template struct PoseGraph<Pose2>;

@@ -81,7 +81,7 @@ class Finisher {
   void join_vertices() {
     const auto same = [this](const Vertex& kept, const Vertex& other) {
       if (kept.id != other.id) return false;
-      if (!(kept.pose.inverse() * other.pose).log().isZero(1e-6)) {
+      if (!kept.pose.between(other.pose).log().isZero(1e-6)) {
         report_.add_note({"vertex with two poses", at(other), std::to_string(other.id),
                           "vertex " + vertex_name(other.id) + " has another pose than in " +
                               paths_[kept.file] + ", which is taken"});

@@ -100,8 +100,8 @@ std::optional<UncertainPose<Pose>> Outlook<Pose>::steps(VertexId from, VertexId 
 template <class Pose>
 UncertainPose<Pose> Outlook<Pose>::between(const Place& a, const Place& b) const {
   const auto& estimate = map_.assessment().estimate();
-  const Pose T_nodes = estimate.poses()[a.node].inverse() * estimate.poses()[b.node];
-  const Pose T_a_b = a.at.T.inverse() * T_nodes * b.at.T;
+  const Pose T_nodes = estimate.poses()[a.node].between(estimate.poses()[b.node]);
+  const Pose T_a_b = a.at.T.between(T_nodes * b.at.T);
   const Matrix across = T_a_b.inverse().adjoint();
   const auto& variable = estimate.gauge().variable;
   std::array<typename spectral::BranchCovariance<Pose::kDof>::Term, 2> terms;
@@ -145,7 +145,7 @@ Standing Outlook<Pose>::standing(Index edge) const {
     if (!path || is_closer(across, *path)) path = across;
   }
   if (path) {
-    const typename Pose::Tangent r = (loop.T_from_to.inverse() * path->T).log();
+    const typename Pose::Tangent r = loop.T_from_to.between(path->T).log();
     const Matrix J = residual_jacobian<Pose>(r);
     const Belief<Pose> others{r, J * path->covariance * J.transpose()};
     const auto gain =
@@ -277,7 +277,7 @@ std::optional<double> Outlook<Pose>::log_density(const Forward& known, const For
   const auto after = steps(known.to, other.to, true);
   if (!before || !after) return std::nullopt;
   const auto predicted = compose(compose(*before, known.measured), *after);
-  const typename Pose::Tangent r = (other.measured.T.inverse() * predicted.T).log();
+  const typename Pose::Tangent r = other.measured.T.between(predicted.T).log();
   const Matrix J = residual_jacobian<Pose>(r);
   return log_normal<Pose>(r, other.measured.covariance + J * predicted.covariance * J.transpose());
 }

@@ -82,7 +82,7 @@ Eigen::VectorXd NormalEquations<Pose>::chi2(const std::vector<Pose>& poses) cons
   Eigen::VectorXd result(constraint_count());
   for (Index k = 0; k < constraint_count(); ++k) {
     const Edge& edge = edges_[k];
-    const Pose T_from_to = poses[edge.from].inverse() * poses[edge.to];
+    const Pose T_from_to = poses[edge.from].between(poses[edge.to]);
     const typename Pose::Tangent r = (edge.T_to_from * T_from_to).log();
     result[k] = r.dot(edge.information * r);
   }
@@ -97,7 +97,7 @@ Eigen::VectorXd NormalEquations<Pose>::linearize(const std::vector<Pose>& poses,
   Eigen::VectorXd chi2(constraint_count());
   for (Index k = 0; k < constraint_count(); ++k) {
     const Edge& edge = edges_[k];
-    const Pose T_from_to = poses[edge.from].inverse() * poses[edge.to];
+    const Pose T_from_to = poses[edge.from].between(poses[edge.to]);
     const typename Pose::Tangent r = (edge.T_to_from * T_from_to).log();
     const typename Pose::Tangent weighted = edge.information * r;
     chi2[k] = r.dot(weighted);
@@ -147,7 +147,7 @@ Eigen::VectorXd NormalEquations<Pose>::slopes(const std::vector<Pose>& poses,
   Eigen::VectorXd result(constraint_count());
   for (Index k = 0; k < constraint_count(); ++k) {
     const Edge& edge = edges_[k];
-    const Pose T_from_to = poses[edge.from].inverse() * poses[edge.to];
+    const Pose T_from_to = poses[edge.from].between(poses[edge.to]);
     const typename Pose::Tangent r = (edge.T_to_from * T_from_to).log();
     const typename Pose::Tangent moved =
         Pose::right_jacobian_inverse(r) *

@@ -26,7 +26,7 @@ Constraint<Pose> measure(const std::vector<Pose>& truth, const LoopPair& pair,
   constraint.from = pair.from;
   constraint.to = pair.to;
   constraint.T_from_to =
-      truth[pair.from].inverse() * truth[pair.to] * Pose::exp(sigma.cwiseProduct(unit));
+      truth[pair.from].between(truth[pair.to]) * Pose::exp(sigma.cwiseProduct(unit));
   constraint.information = sigma.cwiseAbs2().cwiseInverse().asDiagonal();
   return constraint;
 }

@@ -49,6 +49,7 @@ TYPED_TEST(PoseLaws, GroupAxioms) {
     EXPECT_LT(distance(Pose() * a, a), 1e-14);
     EXPECT_LT(distance(a * a.inverse(), Pose()), 1e-14);
     EXPECT_LT(distance(a.inverse() * a, Pose()), 1e-14);
+    EXPECT_LT(distance(a.between(c), a.inverse() * c), 1e-13);
     const typename Pose::Translation point = c.translation();
     EXPECT_LT(((a * b) * point - a * (b * point)).norm(), 1e-13);
   }

@@ -11,7 +11,7 @@ namespace {
 template <class Pose>
 double chi2_against(const UncertainPose<Pose>& predicted, const Constraint<Pose>& measured) {
   using Matrix = typename Pose::Matrix;
-  const typename Pose::Tangent r = (measured.T_from_to.inverse() * predicted.T).log();
+  const typename Pose::Tangent r = measured.T_from_to.between(predicted.T).log();
   const Matrix j = Pose::right_jacobian_inverse(r);
   const Matrix s = covariance_from_information<Pose::kDof>(measured.information) +
                    j * predicted.covariance * j.transpose();

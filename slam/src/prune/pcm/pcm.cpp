@@ -44,7 +44,7 @@ class OdometryPaths {
     const typename Pose::Matrix sum =
         from <= to ? sums_[to] - sums_[from] : sums_[from] - sums_[to];
     const typename Pose::Matrix adjoint = poses_[to].inverse().adjoint();
-    return {poses_[from].inverse() * poses_[to], adjoint * sum * adjoint.transpose()};
+    return {poses_[from].between(poses_[to]), adjoint * sum * adjoint.transpose()};
   }
 
  private:

@@ -39,6 +39,8 @@ class Pose2 {
   double rotation_angle() const;
 
   Pose2 inverse() const;
+  /// inverse() * other, with one rotation less.
+  Pose2 between(const Pose2& other) const;
   Pose2 operator*(const Pose2& other) const;
   Translation operator*(const Translation& point) const;
 
@@ -83,6 +85,8 @@ class Pose3 {
   double rotation_angle() const;
 
   Pose3 inverse() const;
+  /// inverse() * other, with one rotation less.
+  Pose3 between(const Pose3& other) const;
   /// The product's quaternion is normalised, so that long chains do not drift.
   Pose3 operator*(const Pose3& other) const;
   Translation operator*(const Translation& point) const;

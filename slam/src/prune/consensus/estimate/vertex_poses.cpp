@@ -47,7 +47,7 @@ std::optional<Pose> pose_of(const ReducedGraph<Pose>& graph, const std::vector<P
   const Index first = graph.vertex[b - 1];
   const auto part = graph.odometry.relative(first, vertex);
   const auto whole = graph.odometry.relative(first, graph.vertex[b]);
-  const typename Pose::Tangent error = ((poses[b - 1] * whole.T).inverse() * poses[b]).log();
+  const typename Pose::Tangent error = (poses[b - 1] * whole.T).between(poses[b]).log();
   const typename Pose::Tangent share =
       in_first_frame(part) * in_first_frame(whole).ldlt().solve(whole.T.adjoint() * error);
   return poses[b - 1] * Pose::exp(share) * part.T;

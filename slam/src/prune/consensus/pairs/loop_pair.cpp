@@ -35,7 +35,7 @@ std::vector<ForwardLoop<Pose>> forward_loops(const ReducedGraph<Pose>& graph,
 
 template <class Pose>
 bool measure_the_same(const Pose& a, const Pose& b) {
-  return (a.inverse() * b).log().norm() < kSame && a.log().norm() >= kSame;
+  return a.between(b).log().norm() < kSame && a.log().norm() >= kSame;
 }
 
 template <class Pose>
@@ -45,7 +45,7 @@ PairResidual<Pose> pair_residual(const ReducedGraph<Pose>& graph, const Covarian
   const auto before = along(graph, scale, measured.from, known.from);
   const auto after = along(graph, scale, known.to, measured.to);
   const auto predicted = compose(compose(before, known.measured), after);
-  const typename Pose::Tangent r = (measured.measured.T.inverse() * predicted.T).log();
+  const typename Pose::Tangent r = measured.measured.T.between(predicted.T).log();
   const typename Pose::Matrix j = residual_jacobian<Pose>(r);
   return {r, measured.measured.covariance + j * predicted.covariance * j.transpose()};
 }
