@@ -72,8 +72,9 @@ template <class Pose>
 double evidence_of(const Objective<Pose>& objective, Estimate<Pose>& estimate,
                    Explanation<Pose>& explanation) {
   estimate.update(explanation.accepted, explanation.scale, 10);
-  return objective.evidence(explanation, objective.stated(), estimate,
-                            objective.near({estimate.poses()}));
+  return objective.fit(explanation, objective.stated(), estimate,
+                       objective.near({estimate.poses()})) +
+         objective.log_scale_peak(explanation);
 }
 
 TYPED_TEST(ObjectiveOf, IsTheMarginalLikelihoodOfTheLoops) {

@@ -55,7 +55,7 @@ double evidence_at(const Objective<Pose>& objective, const typename Pose::Tangen
   const auto graph = objective.scaled(all.shapes);
   Estimate<Pose> estimate(graph.reduced);
   estimate.update(all.accepted, all.scale, 20);
-  return objective.evidence(all, graph, estimate, {});
+  return objective.fit(all, graph, estimate, {}) + objective.log_scale_peak(all);
 }
 
 TYPED_TEST(OdometryComponentOf, IsTheDerivativeOfTheEvidence) {

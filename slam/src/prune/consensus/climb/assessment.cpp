@@ -62,12 +62,15 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   found_.mixture = now.mixture();
   find_peak(now);
   find_nearness(now);
-  if (ceiling(now) < least) return false;
+  const double fit = objective_.fit(now, *found_.graph, estimate_, found_.near);
+  // The more redundancy there is, the narrower is the peak of the scales.
+  now.redundancy = {};
+  if (fit + objective_.log_scale_peak(now) < least) return false;
   predict(now);
   find_redundancy(now);
   now.layout = estimate_.layout();
   if (pace_) pace_(kCovarianceWork * estimate_.work());
-  now.evidence = evidence(now);
+  now.evidence = fit + objective_.log_scale_peak(now);
   if (now.evidence < least) return false;
   weigh(now);
   return true;
@@ -84,20 +87,6 @@ void Assessment<Pose>::find_nearness(const Explanation<Pose>& now) {
   found_.near_of = accepted;
   nearness_found_.times += 1.0;
   if (pace_) pace_(NearnessFound::kWork);
-}
-
-// Of the evidence, before redundancy is known: the more there is, the narrower is the peak.
-template <class Pose>
-double Assessment<Pose>::ceiling(Explanation<Pose>& now) const {
-  const auto before = std::exchange(now.redundancy, {});
-  const double highest = evidence(now);
-  now.redundancy = before;
-  return highest;
-}
-
-template <class Pose>
-double Assessment<Pose>::evidence(const Explanation<Pose>& now) const {
-  return objective_.evidence(now, *found_.graph, estimate_, found_.near);
 }
 
 template <class Pose>

@@ -89,8 +89,6 @@ class Assessment {
   void rescale(const Shapes<Pose>& shapes);
   void find_peak(Explanation<Pose>& now);
   void find_nearness(const Explanation<Pose>& now);
-  double ceiling(Explanation<Pose>& now) const;
-  double evidence(const Explanation<Pose>& now) const;
   bool reweigh(Explanation<Pose>& now, bool anyway);
   Matrix information(const Explanation<Pose>& now, Index loop) const {
     return objective_.information(now, *found_.graph, loop);

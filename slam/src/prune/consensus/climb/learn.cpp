@@ -184,7 +184,7 @@ ScaleShares likeliest_from(Accuracy<Pose> accuracy, Residuals<Pose>& residuals) 
 }
 
 // With all shares integrated out, and the peak of the scale as wide as these residuals leave it, as
-// Objective::evidence() has it.
+// the objective has it.
 template <class Pose>
 double log_likelihood(const Accuracy<Pose>& accuracy, const Residuals<Pose>& residuals) {
   const ScaleMixture mixture = accuracy.mixture();

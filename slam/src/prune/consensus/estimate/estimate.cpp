@@ -171,8 +171,8 @@ struct Estimate<Pose>::Derivative {
 // d(T_a^-1 T_b) = -Ad d_a + d_b, with Ad the adjoint of T_b_a.
 template <class Pose>
 typename Estimate<Pose>::Derivative Estimate<Pose>::derivative(const Link<Pose>& link) const {
-  const Pose T_a_b = linearized_[link.a].inverse() * linearized_[link.b];
-  const Tangent r = (link.T_a_b.inverse() * T_a_b).log();
+  const Pose T_a_b = linearized_[link.a].between(linearized_[link.b]);
+  const Tangent r = link.T_a_b.between(T_a_b).log();
   const Matrix J = residual_jacobian<Pose>(r);
   return {r, -J * T_a_b.inverse().adjoint(), J};
 }
@@ -180,14 +180,16 @@ typename Estimate<Pose>::Derivative Estimate<Pose>::derivative(const Link<Pose>&
 template <class Pose>
 typename Pose::Tangent Estimate<Pose>::residual(const Link<Pose>& link) const {
   if (move_.size() == 0) {
-    return (link.T_a_b.inverse() * (poses_[link.a].inverse() * poses_[link.b])).log();
+    return link.T_a_b.between(poses_[link.a].between(poses_[link.b])).log();
   }
-  auto [r, by_a, by_b] = derivative(link);
+  const Pose T_a_b = linearized_[link.a].between(linearized_[link.b]);
+  const Tangent r = link.T_a_b.between(T_a_b).log();
   const Index a = equations_->gauge().variable[link.a];
   const Index b = equations_->gauge().variable[link.b];
-  if (a >= 0) r += by_a * move_.template segment<Pose::kDof>(a * Pose::kDof);
-  if (b >= 0) r += by_b * move_.template segment<Pose::kDof>(b * Pose::kDof);
-  return r;
+  Tangent d = Tangent::Zero();
+  if (a >= 0) d -= T_a_b.inverse().adjoint() * move_.template segment<Pose::kDof>(a * Pose::kDof);
+  if (b >= 0) d += move_.template segment<Pose::kDof>(b * Pose::kDof);
+  return r + residual_jacobian<Pose>(r) * d;
 }
 
 // To that of the cost: what a link adds whose residual is off by each of `errors`, in its own

@@ -32,29 +32,40 @@ void add_edge(const StepError<Pose>& step, const typename Pose::Matrix& carry,
 
 // Of a step's edges.
 template <class Pose>
-void add_step(const PoseGraph<Pose>& graph, const std::vector<std::optional<Index>>& edges,
+void add_step(const std::vector<std::optional<ChainEdge<Pose>>>& chain,
               const typename Pose::Tangent& shape, const ReducedGraph<Pose>& reduced,
               const Link<Pose>& step, const StepError<Pose>& error, OdometryComponent<Pose>& sum) {
   using Matrix = typename Pose::Matrix;
   const typename Pose::Tangent root = shape.cwiseSqrt();
   Pose onward;  // from the edge's end to the step's
   for (Index v = reduced.vertex[step.b]; v > reduced.vertex[step.a]; --v) {
-    const auto& edge = graph.constraints[*edges[v - 1]];
-    const bool forward = edge.from < edge.to;
-    const Matrix Sigma = root.asDiagonal() *
-                         covariance_from_information<Pose::kDof>(edge.information) *
-                         root.asDiagonal();
-    const Matrix carry = onward.inverse().adjoint();
-    add_edge<Pose>(error, forward ? carry : Matrix(carry * edge.T_from_to.adjoint()), Sigma, sum);
-    onward = (forward ? edge.T_from_to : edge.T_from_to.inverse()) * onward;
+    const ChainEdge<Pose>& edge = *chain[v - 1];
+    const Matrix Sigma = root.asDiagonal() * edge.covariance * root.asDiagonal();
+    const Matrix carry = (edge.forward ? onward : edge.T * onward).inverse().adjoint();
+    add_edge<Pose>(error, carry, Sigma, sum);
+    onward = edge.T * onward;
   }
 }
 
 }  // namespace
 
 template <class Pose>
-OdometryComponent<Pose> odometry_component(const PoseGraph<Pose>& graph,
-                                           const std::vector<std::optional<Index>>& edges,
+std::vector<std::optional<ChainEdge<Pose>>> chain_of(const PoseGraph<Pose>& graph,
+                                                     const EdgeRoles& roles) {
+  std::vector<std::optional<ChainEdge<Pose>>> chain;
+  for (const auto& edge : chain_edges(graph, roles)) {
+    auto& next = chain.emplace_back();
+    if (!edge) continue;
+    const auto& told = graph.constraints[*edge];
+    const bool forward = told.from < told.to;
+    next = {forward ? told.T_from_to : told.T_from_to.inverse(), forward,
+            covariance_from_information<Pose::kDof>(told.information)};
+  }
+  return chain;
+}
+
+template <class Pose>
+OdometryComponent<Pose> odometry_component(const std::vector<std::optional<ChainEdge<Pose>>>& chain,
                                            const typename Pose::Tangent& shape, double scale,
                                            const ReducedGraph<Pose>& reduced,
                                            const Estimate<Pose>& estimate,
@@ -69,7 +80,7 @@ OdometryComponent<Pose> odometry_component(const PoseGraph<Pose>& graph,
           if (k >= reduced.contracted) {  // an edge by itself
             add_edge<Pose>(error, Pose::Matrix::Identity(), step.covariance, parts[block]);
           } else {
-            add_step(graph, edges, shape, reduced, step, error, parts[block]);
+            add_step(chain, shape, reduced, step, error, parts[block]);
           }
         }
       });
@@ -82,17 +93,15 @@ OdometryComponent<Pose> odometry_component(const PoseGraph<Pose>& graph,
   return sum;
 }
 
-template OdometryComponent<Pose2> odometry_component(const PoseGraph<Pose2>&,
-                                                     const std::vector<std::optional<Index>>&,
-                                                     const Pose2::Tangent&, double,
-                                                     const ReducedGraph<Pose2>&,
-                                                     const Estimate<Pose2>&,
-                                                     std::span<const Pose2::Matrix>, int);
-template OdometryComponent<Pose3> odometry_component(const PoseGraph<Pose3>&,
-                                                     const std::vector<std::optional<Index>>&,
-                                                     const Pose3::Tangent&, double,
-                                                     const ReducedGraph<Pose3>&,
-                                                     const Estimate<Pose3>&,
-                                                     std::span<const Pose3::Matrix>, int);
+template std::vector<std::optional<ChainEdge<Pose2>>> chain_of(const PoseGraph<Pose2>&,
+                                                               const EdgeRoles&);
+template std::vector<std::optional<ChainEdge<Pose3>>> chain_of(const PoseGraph<Pose3>&,
+                                                               const EdgeRoles&);
+template OdometryComponent<Pose2> odometry_component(
+    const std::vector<std::optional<ChainEdge<Pose2>>>&, const Pose2::Tangent&, double,
+    const ReducedGraph<Pose2>&, const Estimate<Pose2>&, std::span<const Pose2::Matrix>, int);
+template OdometryComponent<Pose3> odometry_component(
+    const std::vector<std::optional<ChainEdge<Pose3>>>&, const Pose3::Tangent&, double,
+    const ReducedGraph<Pose3>&, const Estimate<Pose3>&, std::span<const Pose3::Matrix>, int);
 
 }  // namespace isotherm::slam::detail

@@ -102,9 +102,12 @@ ErrorScale error_scale(const ScaleMixture& mixture, const Misfit& misfit) {
     log_density[j] = mixture.log_share[j] - 0.5 * (log_determinant[j] + chi2);
   }
   ErrorScale result = error_scale(mixture, log_density);
+  const auto likeliest = static_cast<std::size_t>(std::ranges::max_element(result.probability) -
+                                                  result.probability.begin());
+  const double log_sum = log_density[likeliest] - std::log(result.probability[likeliest]);
   for (std::size_t j = 0; j < kScaleCount; ++j) {
     const double p = result.probability[j];
-    if (p > 0.0) result.evidence -= p * (0.5 * log_determinant[j] + std::log(p));
+    if (p > 0.0) result.evidence -= p * (0.5 * log_determinant[j] + log_density[j] - log_sum);
   }
   return result;
 }

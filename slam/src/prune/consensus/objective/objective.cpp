@@ -43,7 +43,7 @@ Objective<Pose>::Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                            bool calibrate)
     : graph_(in_own_frames(graph, roles)),
       roles_(roles),
-      chain_edges_(chain_edges(graph_, roles_)),
+      chain_(chain_of(graph_, roles_)),
       stated_(scaled({})),
       near_(stated_.reduced),
       runs_(stated_.reduced, window),
@@ -100,9 +100,8 @@ double Objective<Pose>::loops_fit(const Explanation<Pose>& explanation,
 }
 
 template <class Pose>
-double Objective<Pose>::evidence(const Explanation<Pose>& explanation,
-                                 const ScaledGraph<Pose>& graph, const Estimate<Pose>& estimate,
-                                 const NearByClass& near) const {
+double Objective<Pose>::fit(const Explanation<Pose>& explanation, const ScaledGraph<Pose>& graph,
+                            const Estimate<Pose>& estimate, const NearByClass& near) const {
   const CovarianceScale& scale = explanation.scale;
   double alternatives = 0.0;
   std::size_t kept = 0;
@@ -118,11 +117,9 @@ double Objective<Pose>::evidence(const Explanation<Pose>& explanation,
   return loops_fit(explanation, graph, estimate) - 0.5 * estimate.odometry_cost() / scale.odometry -
          0.5 * (estimate.log_determinant() - log_information) +
          joined * (0.5 * Pose::kDof * kLog2Pi - log_volume_) - alternatives +
-         log_prior(kept, explanation.accepted.size()) + log_scale_peak(explanation);
+         log_prior(kept, explanation.accepted.size());
 }
 
-// log of the prior at the scales times the width of the peak there, and of how likely steps of
-// odometry are that vary as little as they do.
 template <class Pose>
 double Objective<Pose>::log_scale_peak(const Explanation<Pose>& explanation) const {
   if (!calibrate_) return 0.0;

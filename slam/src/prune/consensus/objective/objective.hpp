@@ -39,11 +39,13 @@ struct Explanation {
   typename Pose::Tangent odometry_cost = Pose::Tangent::Zero();  ///< OdometryComponent::cost
   typename Estimate<Pose>::Layout layout;
   std::vector<Standing> standings;  ///< of each loop, given all others
-  double evidence = 0.0;            ///< Objective::evidence()
+  double evidence = 0.0;            ///< see Objective
 
   std::size_t accepted_count() const {
     return static_cast<std::size_t>(std::ranges::count(accepted, true));
   }
+
+  bool accepts_all() const { return accepted_count() == accepted.size(); }
 
   /// Whether any number measured is left to tell how accurate measurements are.
   bool tells_of_scales() const { return redundancy.odometry.sum() + redundancy.loops.sum() >= 1.0; }
@@ -140,26 +142,29 @@ class Objective {
                                    const ScaledGraph<Pose>& graph, const Estimate<Pose>& estimate,
                                    std::span<const typename Pose::Matrix> covariances,
                                    int threads = 1) const {
-    return odometry_component(graph_, chain_edges_, explanation.shapes.odometry,
-                              explanation.scale.odometry, graph.reduced, estimate, covariances,
-                              threads);
+    return odometry_component(chain_, explanation.shapes.odometry, explanation.scale.odometry,
+                              graph.reduced, estimate, covariances, threads);
   }
 
   /// log of the volume of relative poses that the map of odometry allows.
   double log_volume() const noexcept { return log_volume_; }
 
-  /// `estimate` must have settled on the explanation's loops, scales and weights, on `graph`.
-  double evidence(const Explanation<Pose>& explanation, const ScaledGraph<Pose>& graph,
-                  const Estimate<Pose>& estimate, const NearByClass& near) const;
+  /// The evidence, but for what log_scale_peak() says. `estimate` must have settled on the
+  /// explanation's loops, scales and weights, on `graph`.
+  double fit(const Explanation<Pose>& explanation, const ScaledGraph<Pose>& graph,
+             const Estimate<Pose>& estimate, const NearByClass& near) const;
+
+  /// log of the prior at the scales times the width of the peak there, which is as narrow as
+  /// redundancy has it, and of how likely steps of odometry are that vary as little as they do.
+  double log_scale_peak(const Explanation<Pose>& explanation) const;
 
  private:
-  double log_scale_peak(const Explanation<Pose>& explanation) const;
   double loops_fit(const Explanation<Pose>& explanation, const ScaledGraph<Pose>& graph,
                    const Estimate<Pose>& estimate) const;
 
   PoseGraph<Pose> graph_;  // in_own_frames()
   EdgeRoles roles_;
-  std::vector<std::optional<Index>> chain_edges_;
+  std::vector<std::optional<ChainEdge<Pose>>> chain_;
   ScaledGraph<Pose> stated_;
   NearDensity<Pose> near_;
   Runs<Pose> runs_;
