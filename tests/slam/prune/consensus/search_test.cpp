@@ -145,6 +145,16 @@ TEST(Search, FindsNoLessThanKnowingTheLoopsWould) {
 }
 
 // Covariances that are stated a hundred times too large or small, both alike.
+TEST(Search, NotToTheLastEndsWithAClimbThatExplainsAll) {
+  const auto city = simulate_city({.poses = 600, .measurements = {.loops = 150}, .seed = 3});
+  const Objective<Pose2> objective(city.graph, edge_roles(city.graph), kWindow);
+  Climb<Pose2> first(objective, kOptions, kSilent);
+  ASSERT_TRUE(first.from(CovarianceScale{}).accepts_all());
+  Climb<Pose2> climb(objective, kOptions, kSilent);
+  EXPECT_TRUE(search(climb, {.to_the_last = false}).front().accepts_all());
+  EXPECT_EQ(climb.moves().size(), first.moves().size());
+}
+
 TEST(Search, FindsAllTrueWhateverTheUnits) {
   for (const double factor : {0.01, 1.0, 100.0}) {
     Random random(6);

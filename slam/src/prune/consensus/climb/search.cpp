@@ -94,7 +94,12 @@ template <class Pose>
 std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   const bool calibrate = climb.options().calibrate;
   std::vector<Explanation<Pose>> found;
-  const auto try_from = [&](const auto& start) { found.push_back(climb.from(start)); };
+  const auto all_explained = [&found] {
+    return std::ranges::any_of(found, [](const auto& peak) { return peak.accepts_all(); });
+  };
+  const auto try_from = [&](const auto& start) {
+    if (depth.to_the_last || !all_explained()) found.push_back(climb.from(start));
+  };
   const std::vector<Index> sampled = sample_of(climb, depth.sample_soon);
   const bool at_once = sampled.empty();
   climb.look_afar(at_once);
