@@ -565,7 +565,7 @@ of noise and a fifth of the ranges too long has 363 nodes far off.
 
 CONSTANTS = """### Constants
 
-What the localiser decides by is in `network/src/localize/constants.hpp`, 25 constants with their unit and
+What the localiser decides by is in `network/src/localize/constants.hpp`, 23 constants with their unit and
 where they come from; [what each is worth](localization-ablation.md).
 """
 
