@@ -1,6 +1,8 @@
 #include "localize/start/search.hpp"
 
 #include <algorithm>
+#include <array>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -19,7 +21,7 @@
 namespace isotherm::network::detail {
 namespace {
 
-constexpr int kMostRounds = 10;  // of what is tried as long as it helps
+constexpr std::size_t kMostRounds = 10;  // of what is tried as long as it helps
 
 class Search {
  public:
@@ -36,8 +38,8 @@ class Search {
     const bool has_false = std::find(likely.begin(), likely.end(), false) != likely.end();
     consider(started(has_false ? supported_pairs(problem_, likely) : likely, Errors::any));
     unfold_best();
-    if (!is_enough()) try_the_other_start();
-    for (int round = 0; round < kMostRounds && consider_redrawn(); ++round) unfold_best();
+    if (!is_enough()) try_other_starts();
+    for (std::size_t round = 0; round < kMostRounds && consider_redrawn(); ++round) unfold_best();
     return std::move(best_);
   }
 
@@ -46,20 +48,42 @@ class Search {
     return in_frame(map_by_paths({free_, pairs, task_.gate, task_.options}, errors));
   }
 
-  void try_the_other_start() {
+  // What follows from the best map in turns, until nothing of it helps.
+  void try_other_starts() {
     consider(started(task_.trusted, Errors::too_long));
     unfold_best();
-    heat_best();
-  }
-
-  // With ranges taken for of any length and for too long in turns, until neither helps.
-  void heat_best() {
-    int vain = 0;
-    for (int round = 0; round < kMostRounds && vain < 2; ++round) {
-      const bool helps = consider(heated(round % 2 == 0 ? Errors::any : Errors::too_long));
+    const std::array<std::function<Placement()>, 4> ways = {
+        [&] { return heated(Errors::any); }, [&] { return heated(Errors::too_long); },
+        [&] { return anew_from(uncontradicted()); },
+        [&] { return anew_from(supported_pairs(problem_, uncontradicted())); }};
+    std::size_t vain = 0;
+    for (std::size_t turn = 0; turn < kMostRounds * ways.size() && vain < ways.size(); ++turn) {
+      const bool helps = consider(ways[turn % ways.size()]());
       if (helps) unfold_best();
       vain = helps ? 0 : vain + 1;
     }
+  }
+
+  // A start from these pairs; nodes of which they say nothing stay where the best map has them.
+  Placement anew_from(const std::vector<bool>& pairs) const {
+    auto map = started(pairs, Errors::any);
+    if (!in_frame_of_best(map)) return map;
+    for (Index v = 0; v < problem_.nodes; ++v) {
+      if (map.placed[v] || !best_.placed[v]) continue;
+      map.placed[v] = true;
+      map.positions.col(v) = best_.positions.col(v);
+    }
+    return map;
+  }
+
+  // Trusted pairs but those that the best map contradicts.
+  std::vector<bool> uncontradicted() const {
+    auto pairs = task_.trusted;
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      const auto& pair = problem_.pairs[p];
+      if (is_placed(best_, pair) && !task_.fits(best_, pair)) pairs[p] = false;
+    }
+    return pairs;
   }
 
   Placement in_frame(Placement map) const {

@@ -17,8 +17,9 @@ std::vector<bool> supported_pairs(const RangeProblem& problem, const std::vector
 
 /// The map of the highest objective that is found. A start is a map by shortest paths, unfolded by
 /// springs: of the pairs that are likelier true than not and that others support; unless hardly a
-/// trusted pair contradicts that one, of all that heat leaves, as ranges that may be too long. Each
-/// is refined, and of two maps each part is taken from where it is likelier. So is what comes of
+/// trusted pair contradicts that one, of all that heat leaves, as ranges that may be too long, and
+/// of those that the best map does not contradict, or of these those that others support. Each is
+/// refined, and of two maps each part is taken from where it is likelier. So is what comes of
 /// mirroring parts of the best map, unfolding it again as ranges of any length or too long, and
 /// drawing regions of it anew, as long as that helps. Plain least squares has the first map as it
 /// is. @throws Cancelled
