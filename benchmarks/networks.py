@@ -557,10 +557,7 @@ few ranges until it fits, and a part may be shifted or turned. In networks of 10
 single nodes at the border, whose few ranges agree in a wrong place. Precision falls a little where
 ranges can be too long, most with 10 % of noise: an excess below the noise is taken for one now and then.
 
-A ratio far from 1 is mostly of a part that only one of the two estimates has in its mirror image. Of
-10,000 nodes two networks have such a part, of 33 and 43 nodes at the border, that is taken for firm
-(eight ranges tie the first to the rest, none of which its mirror image contradicts), and one with 10 %
-of noise and a fifth of the ranges too long has 363 nodes far off.
+A ratio far from 1 is mostly of a part that only one of the two estimates has in its mirror image.
 """
 
 CONSTANTS = """### Constants

@@ -160,6 +160,19 @@ void Estimate<Pose>::restore(Layout layout) {
   move_.resize(0);
 }
 
+// Of a link, where the factor was formed.
+template <class Pose>
+struct Estimate<Pose>::AtFactor {
+  Pose T_a_b;
+  Tangent residual;
+};
+
+template <class Pose>
+typename Estimate<Pose>::AtFactor Estimate<Pose>::at_factor(const Link<Pose>& link) const {
+  const Pose T_a_b = linearized_[link.a].between(linearized_[link.b]);
+  return {T_a_b, link.T_a_b.between(T_a_b).log()};
+}
+
 // Of a residual, by the poses at its ends, where the factor was formed.
 template <class Pose>
 struct Estimate<Pose>::Derivative {
@@ -171,8 +184,7 @@ struct Estimate<Pose>::Derivative {
 // d(T_a^-1 T_b) = -Ad d_a + d_b, with Ad the adjoint of T_b_a.
 template <class Pose>
 typename Estimate<Pose>::Derivative Estimate<Pose>::derivative(const Link<Pose>& link) const {
-  const Pose T_a_b = linearized_[link.a].between(linearized_[link.b]);
-  const Tangent r = link.T_a_b.between(T_a_b).log();
+  const auto [T_a_b, r] = at_factor(link);
   const Matrix J = residual_jacobian<Pose>(r);
   return {r, -J * T_a_b.inverse().adjoint(), J};
 }
@@ -182,8 +194,7 @@ typename Pose::Tangent Estimate<Pose>::residual(const Link<Pose>& link) const {
   if (move_.size() == 0) {
     return link.T_a_b.between(poses_[link.a].between(poses_[link.b])).log();
   }
-  const Pose T_a_b = linearized_[link.a].between(linearized_[link.b]);
-  const Tangent r = link.T_a_b.between(T_a_b).log();
+  const auto [T_a_b, r] = at_factor(link);
   const Index a = equations_->gauge().variable[link.a];
   const Index b = equations_->gauge().variable[link.b];
   Tangent d = Tangent::Zero();

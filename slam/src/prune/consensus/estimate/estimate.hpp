@@ -124,6 +124,8 @@ class Estimate {
   void factorise();
   Eigen::VectorXd next_move();
   double step();
+  struct AtFactor;
+  AtFactor at_factor(const Link<Pose>& link) const;
   struct Derivative;
   Derivative derivative(const Link<Pose>& link) const;
   PoseGraph<Pose> used_links(const std::vector<bool>& accepted);
