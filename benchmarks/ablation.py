@@ -58,6 +58,11 @@ MOVES = {
                    "if ({off}) break;"),
     "loops weighed by the others": (CLIMB, "::weigh_by_others() {\n", "if ({off}) return false;"),
     "the look afar": (CLIMB, "::weigh_afar() {\n", "if ({off}) return false;"),
+    "slips of odometry": (CLIMB, "::find_slips(double gain) {\n", "if ({off}) return false;"),
+    "climbs that look for slips first":
+        ("climb/search.cpp", "best_of(found).accepts_all()) return;\n", "if ({off}) return;"),
+    "coordinates leveled beside slips":
+        (CLIMB, "::level_odometry() {\n", "if ({off}) return false;"),
     "all accepted that are not false beyond doubt":
         (CLIMB, "::accept_undecided() {\n", "if ({off}) return false;"),
     "all dropped that are not true beyond doubt":

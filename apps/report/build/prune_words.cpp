@@ -58,6 +58,17 @@ std::string words_of_scale(std::string_view what, double scale) {
                    what);
 }
 
+std::string words_of_slips(const std::vector<OdometrySlip>& slips) {
+  constexpr std::size_t kNamed = 5;
+  if (slips.empty()) return "";
+  std::string text = fmt::format(
+      " Odometry slips {} times, where it errs ten times as much or more:", slips.size());
+  for (std::size_t k = 0; k < std::min(kNamed, slips.size()); ++k) {
+    text += fmt::format("{} {} to {}", k == 0 ? "" : ",", slips[k].from, slips[k].to);
+  }
+  return text + (slips.size() > kNamed ? " and more." : ".");
+}
+
 std::string words_of_scales(const ConsensusResult& result) {
   std::string text = fmt::format(
       " Errors turn out to be {:.3g} times (odometry) and {:.3g} times (most loops) as large as "
@@ -68,7 +79,8 @@ std::string words_of_scales(const ConsensusResult& result) {
     text += fmt::format(" About {:.0f} % of the loops are less accurate than most.",
                         100.0 * result.share_of_worse);
   }
-  return text + words_of_scale("the accuracy of odometry", result.odometry_scale) +
+  return text + words_of_slips(result.odometry_slips) +
+         words_of_scale("the accuracy of odometry", result.odometry_scale) +
          words_of_scale("the accuracy of loops", result.loop_scale) +
          words_of_scale("the accuracy of rotation against translation", result.rotation_scale);
 }

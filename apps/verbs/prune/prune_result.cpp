@@ -44,11 +44,16 @@ Json to_json(const ConsensusResult& result, const spectral::EdgeVerdicts& verdic
                {"loop_scale", result.loop_scale},
                {"odometry_scales", result.odometry_scales},
                {"loop_scales", result.loop_scales},
+               {"odometry_slips", Json::array()},
                {"rotation_scale", result.rotation_scale},
                {"share_of_worse", result.share_of_worse},
                {"settled", result.settled},
                {"moves", Json::array()},
                {"loops", Json::array()}};
+  for (const auto& slip : result.odometry_slips) {
+    json["odometry_slips"].push_back(
+        {{"from", slip.from}, {"to", slip.to}, {"factor", slip.factor}});
+  }
   for (const auto& move : result.moves) {
     json["moves"].push_back(
         {{"accepted", move.accepted}, {"dropped", move.dropped}, {"in_force", move.in_force}});

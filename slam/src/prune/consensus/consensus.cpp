@@ -29,6 +29,17 @@ typename Pose::Tangent shape_of(const std::vector<double>& scales, double mean) 
   return Pose::Tangent::Map(scales.data()) / mean;
 }
 
+template <class Pose>
+detail::Slips slips_as(const PoseGraph<Pose>& graph, const std::vector<OdometrySlip>& found) {
+  detail::Slips slips;
+  if (!found.empty()) slips.resize(graph.ids.size() - 1);
+  for (const auto& slip : found) {
+    const double deviations = prior_deviations(slip.factor * slip.factor);
+    slips[*graph.find(slip.from)] = static_cast<std::uint8_t>(std::lround(deviations));
+  }
+  return slips;
+}
+
 // At the scales that were learnt; a pair of true loops is taken for a conflict as rarely as asked.
 template <class Pose>
 void add_conflicts(const PoseGraph<Pose>& graph, const EdgeRoles& roles, double significance,
@@ -38,7 +49,8 @@ void add_conflicts(const PoseGraph<Pose>& graph, const EdgeRoles& roles, double 
   if (std::ranges::count(kept, true) == 0 || std::ranges::count(pruned, true) == 0) return;
   const detail::CovarianceScale scale = {result.odometry_scale, result.loop_scale};
   const detail::Shapes<Pose> shapes = {shape_of<Pose>(result.odometry_scales, scale.odometry),
-                                       shape_of<Pose>(result.loop_scales, scale.loops)};
+                                       shape_of<Pose>(result.loop_scales, scale.loops),
+                                       slips_as(graph, result.odometry_slips)};
   const auto reduced =
       detail::scaled_graph(detail::in_own_frames(graph, roles), roles, shapes).reduced;
   const double gate = chi_squared_quantile(1.0 - significance, Pose::kDof);

@@ -1,6 +1,8 @@
 #include "prune/consensus/judge.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "graph/candidate_verdicts.hpp"
 #include "prune/consensus/climb/climb.hpp"
@@ -18,6 +20,20 @@ bool detail::has_information(const PoseGraph<Pose>& graph, const EdgeRoles& role
          std::ranges::any_of(roles.candidates, says_something);
 }
 
+namespace {
+
+template <class Pose>
+std::vector<OdometrySlip> slips_of(const PoseGraph<Pose>& graph, const detail::Slips& slips) {
+  std::vector<OdometrySlip> result;
+  for (std::size_t v = 0; v < slips.size(); ++v) {
+    if (slips[v] == 0) continue;
+    result.push_back({graph.ids[v], graph.ids[v + 1], std::sqrt(detail::slip_factor(slips[v]))});
+  }
+  return result;
+}
+
+}  // namespace
+
 template <class Pose>
 ConsensusResult detail::judge_by_evidence(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                                           const ConsensusOptions& options, const RunContext& run) {
@@ -30,6 +46,7 @@ ConsensusResult detail::judge_by_evidence(const PoseGraph<Pose>& graph, const Ed
   result.moves = climb.moves();
   result.settled = climb.settled();
   detail::report(found, options.significance, result);
+  result.odometry_slips = slips_of(graph, found.front().shapes.slips);
   return result;
 }
 

@@ -301,6 +301,42 @@ TYPED_TEST(ConsensusOf, LearnsThatInformationIsOverconfident) {
 // Every loop that is kept fits the least-squares solution of what is kept, found by
 // another solver: nothing accepted early is left unchecked once loops are dropped or
 // the scales change.
+// Twenty deviations in a step of fifty: all others would have to err seven times as much.
+TYPED_TEST(ConsensusOf, FindsWhereOdometrySlips) {
+  using Pose = TypeParam;
+  Random random(11);
+  auto graph = random_loop_graph<Pose>(random, 150, 80, 1.0).graph;
+  std::vector<VertexId> slipped;
+  for (Index k = 20; k < 140; k += 50) {
+    auto& step = graph.constraints[k];
+    ASSERT_EQ(std::abs(step.to - step.from), 1);
+    const typename Pose::Matrix deviation =
+        Eigen::LLT<typename Pose::Matrix>(step.information.inverse()).matrixL();
+    step.T_from_to = step.T_from_to * Pose::exp(20.0 * (deviation * Pose::Tangent::Ones()));
+    slipped.push_back(graph.ids[std::min(step.from, step.to)]);
+  }
+  const auto result = consensus(graph, edge_roles(graph), {}, {.threads = 1});
+  EXPECT_EQ(count(result.verdicts, spectral::Verdict::keep), 80);
+  std::vector<VertexId> found;
+  for (const auto& slip : result.odometry_slips) {
+    found.push_back(slip.from);
+    EXPECT_EQ(slip.to, slip.from + 1);
+    EXPECT_GE(slip.factor, 9.99);
+  }
+  EXPECT_EQ(found, slipped);
+  EXPECT_LT(result.odometry_scale, 2.0);
+}
+
+TYPED_TEST(ConsensusOf, OdometryThatErrsAsStatedDoesNotSlip) {
+  using Pose = TypeParam;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Random random(seed);
+    const auto graph = random_loop_graph<Pose>(random, 150, 80, 1.0).graph;
+    const auto result = consensus(graph, edge_roles(graph), {}, {.threads = 1});
+    EXPECT_TRUE(result.odometry_slips.empty()) << seed;
+  }
+}
+
 TYPED_TEST(ConsensusOf, WhatIsKeptFitsItsOptimum) {
   using Pose = TypeParam;
   Random random(41);

@@ -68,6 +68,13 @@ struct ConsensusMove {
   std::int64_t in_force = 0;  ///< accepted loops after the move
 };
 
+/// An edge of odometry that errs more than the others.
+struct OdometrySlip {
+  VertexId from = 0;
+  VertexId to = 0;      ///< the next vertex
+  double factor = 1.0;  ///< on its standard deviation, beside that of all odometry
+};
+
 struct ConsensusResult {
   /// One a candidate, in file order: score is the log odds that the loop is false, threshold
   /// those from which it is pruned, stage "accepted", "rejected" or "unconnected".
@@ -81,7 +88,8 @@ struct ConsensusResult {
   /// geometric means.
   std::vector<double> odometry_scales;
   std::vector<double> loop_scales;
-  double rotation_scale = 1.0;  ///< of loops, rotation's against translation's
+  std::vector<OdometrySlip> odometry_slips;  ///< ascending
+  double rotation_scale = 1.0;               ///< of loops, rotation's against translation's
   /// Of the loops, those that are less accurate than most.
   double share_of_worse = 0.0;
   bool settled = true;  ///< false: max_rounds ended a climb

@@ -218,15 +218,24 @@ void Assessment<Pose>::solve(Explanation<Pose>& now, const std::vector<Index>& l
   if (odometry) {
     for (const auto& step : graph().steps) links.push_back(&step);
   }
-  const auto covariances = estimate_.residual_covariances(links, threads_);
+  auto covariances = estimate_.residual_covariances(links, threads_);
   for (std::size_t i = 0; i < loops.size(); ++i) found_.covariances[loops[i]] = covariances[i];
   OdometryComponent<Pose> told;
+  found_.steps.reset();
   if (odometry) {
-    told = objective_.odometry(now, *found_.graph, estimate_,
-                               std::span(covariances).subspan(loops.size()), threads_);
+    covariances.erase(covariances.begin(),
+                      covariances.begin() + static_cast<std::ptrdiff_t>(loops.size()));
+    told = objective_.odometry(now, *found_.graph, estimate_, covariances, threads_);
+    found_.steps = std::make_shared<std::vector<Matrix>>(std::move(covariances));
   }
   now.odometry_cost = told.cost;
   now.redundancy.odometry = told.redundancy;
+}
+
+template <class Pose>
+std::vector<SlipChange> Assessment<Pose>::slip_changes(const Explanation<Pose>& now) const {
+  if (!found_.steps) return {};
+  return objective_.slip_changes(now, *found_.graph, estimate_, *found_.steps, threads_);
 }
 
 template <class Pose>

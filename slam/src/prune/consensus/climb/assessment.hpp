@@ -56,6 +56,8 @@ class Assessment {
     std::vector<Matrix> covariances;     // of residuals, one a loop; with it where it is accepted
     // Information of the loops that the covariances are given; none where empty.
     std::vector<Matrix> held;
+    std::shared_ptr<const std::vector<Matrix>>
+        steps;  // covariances of odometry's residuals, if any
   };
   const Findings& findings() const noexcept { return found_; }
 
@@ -75,6 +77,10 @@ class Assessment {
   const Estimate<Pose>& estimate() const noexcept { return estimate_; }
 
   const ReducedGraph<Pose>& graph() const noexcept { return found_.graph->reduced; }
+
+  /// Edges of odometry that are likely to err more than others, or no more; none where nothing but
+  /// odometry is known.
+  std::vector<SlipChange> slip_changes(const Explanation<Pose>& now) const;
 
   /// How much of each coordinate of an accepted loop is left to tell how accurate it is:
   /// diag(I - Omega P), Omega its mean information, P the residual's covariance.

@@ -86,7 +86,7 @@ Explanation<Pose> Climb<Pose>::resume(Standpoint<Pose> standpoint) {
   for (int round = 0; round < options_.max_rounds && vain < kMostVain; ++round) {
     tell_progress();
     const double highest = best_.evidence;
-    if (!shift() && !learn_more_than(0.0)) break;
+    if (!shift() && !learn_more_than(0.0) && !find_slips(0.0)) break;
     vain = best_.evidence > highest + kBetter ? 0 : vain + 1;
   }
   peaks_.push_back(best_);
@@ -126,7 +126,7 @@ template <class Pose>
 const Explanation<Pose>& Climb<Pose>::settle(const std::vector<bool>& accepted) {
   now_.accepted = accepted;
   assess();
-  while (learn_more_than(0.0) || weigh_anew()) {
+  while (learn_more_than(0.0) || weigh_anew() || find_slips(0.0)) {
   }
   return now_;
 }
@@ -246,7 +246,7 @@ const Explanation<Pose>* Climb<Pose>::grow() {
 // False where no move is left.
 template <class Pose>
 bool Climb<Pose>::move() {
-  return shift() || learn_more_than(0.0) || weigh_anew() ||
+  return shift() || learn_more_than(0.0) || weigh_anew() || find_slips(0.0) ||
          once(Trial::undecided, [this] { return accept_undecided(); }) ||
          once(Trial::doubtful, [this] { return drop_undecided(); });
 }
@@ -260,7 +260,7 @@ bool Climb<Pose>::shift() {
   if (!batch.loops.empty() && batch.gain > dropping) {
     accept(batch.loops);
   } else if (!out.empty()) {
-    if (!learn_more_than(dropping)) drop(out);
+    if (!learn_more_than(dropping) && !(slips_first_ && find_slips(dropping))) drop(out);
   } else {
     return false;
   }
@@ -306,7 +306,8 @@ bool Climb<Pose>::weigh_afar() {
 template <class Pose>
 bool Climb<Pose>::weigh_anew() {
   return once(Trial::weights_by_others, [this] { return weigh_by_others(); }) ||
-         once(Trial::afar, [this] { return weigh_afar(); });
+         once(Trial::afar, [this] { return weigh_afar(); }) ||
+         once(Trial::level, [this] { return level_odometry(); });
 }
 
 // All loops that are not false beyond doubt, by twice the log odds that a verdict takes: where a
@@ -459,6 +460,45 @@ bool Climb<Pose>::learn_more_than(double gain) {
     if (found.shapes.is_about(now_.shapes)) failed_[Trial::lesson_of_scales] = true;
   }
   return false;
+}
+
+// Whether edges that err more than others, or no more, gain more than this, or else nothing
+// changes. All that gain at least half of what the one does that gains most, since each explains a
+// part of what others would, or else that one; until none gains, before loops are accepted that a
+// slip too many leaves room for.
+template <class Pose>
+bool Climb<Pose>::find_slips(double gain) {
+  if (!options_.calibrate || failed_[Trial::slips]) return false;
+  const Place before = place();
+  for (;;) {
+    auto changes = assessment_.slip_changes(now_);
+    std::ranges::sort(changes, std::greater{}, &SlipChange::gain);
+    std::size_t count = 0;
+    while (count < changes.size() && changes[count].gain >= 0.5 * changes.front().gain) ++count;
+    const std::span all(changes);
+    if (count == 0 || (!try_slips(all.first(count)) && !try_slips(all.first(1)))) break;
+  }
+  if (now_.evidence > before.now.evidence + gain) return true;
+  if (now_.evidence > before.now.evidence) go_back(before);
+  failed_[Trial::slips] = gain <= 0.0;
+  return false;
+}
+
+// Coordinates that an edge slips in seem to err more than others, until that is known.
+template <class Pose>
+bool Climb<Pose>::level_odometry() {
+  if (now_.shapes.slips.empty() || !options_.calibrate) return false;
+  return try_with([](auto& now) { now.shapes.odometry.setOnes(); }, {.learning = true});
+}
+
+template <class Pose>
+bool Climb<Pose>::try_slips(std::span<const SlipChange> changes) {
+  return try_with([&](auto& now) {
+    now.shapes.slips.resize(objective_.odometry_edges());
+    for (const SlipChange& change : changes) {
+      now.shapes.slips[static_cast<std::size_t>(change.vertex)] = change.slip;
+    }
+  });
 }
 
 // Whether that gains as much, or else nothing changes. Scales at which the normal equations break

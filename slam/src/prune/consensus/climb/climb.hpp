@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "isotherm/base/run_context.hpp"
@@ -57,6 +58,10 @@ class Climb {
   /// takes less time.
   void look_afar(bool looks) { looks_afar_ = looks; }
 
+  /// Climbs look for edges of odometry that slip before they drop a loop, not when nothing else is
+  /// left: true loops stay that only a slip explains, but so do false ones that a slip explains.
+  void slips_first() { slips_first_ = true; }
+
   /// See Assessment.
   void hold_nearness(bool held) { assessment_.hold_nearness(held); }
 
@@ -81,7 +86,17 @@ class Climb {
   bool settled() const noexcept { return settled_; }
 
  private:
-  enum Trial { lesson, lesson_of_scales, weights_by_others, afar, undecided, doubtful, trials };
+  enum Trial {
+    lesson,
+    lesson_of_scales,
+    slips,
+    level,
+    weights_by_others,
+    afar,
+    undecided,
+    doubtful,
+    trials
+  };
 
   using Layout = typename Estimate<Pose>::Layout;
   using Change = std::function<void(Explanation<Pose>&)>;
@@ -126,6 +141,9 @@ class Climb {
   void accept(const Selection& loops);
   bool try_all_as(const Selection& loops, bool accepted);
   bool learn_more_than(double gain);
+  bool find_slips(double gain);
+  bool level_odometry();
+  bool try_slips(std::span<const SlipChange> changes);
   bool once(Trial trial, const std::function<bool()>& move);
   bool weigh_anew();
   bool weigh_by_others();
@@ -157,6 +175,7 @@ class Climb {
   std::size_t drawn_from_ = 0;         // loops, when the map was last drawn anew
   std::array<bool, trials> failed_{};  // trials here; not repeated until a change
   bool looks_afar_ = true;
+  bool slips_first_ = false;
   std::vector<ConsensusMove> moves_;
   bool settled_ = true;
 };

@@ -75,6 +75,20 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole,
   return standpoints;
 }
 
+// Where odometry slips and some loops are false, also by climbs that look for slips first, which no
+// earlier peak leads astray.
+template <class Pose>
+void climb_over_slips(Climb<Pose>& climb, const std::vector<Standpoint<Pose>>& standpoints,
+                      std::vector<Explanation<Pose>>& found) {
+  if (found.empty() || best_of(found).shapes.slips.empty() || best_of(found).accepts_all()) return;
+  Climb<Pose> afresh = climb.on(climb.objective());
+  afresh.look_afar(standpoints.empty());
+  afresh.slips_first();
+  const auto grow = [&](const auto& start) { found.push_back(afresh.from(start)); };
+  for (const auto& standpoint : standpoints) unless_it_breaks_down(grow, standpoint);
+  if (standpoints.empty()) climb_from_each_start(true, grow);
+}
+
 // The loops that were found, better explained: by a climb from the sharpest scales that all begin
 // at, which no other loops or peaks lead astray, and from scales on either side.
 template <class Pose>
@@ -103,9 +117,8 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   const std::vector<Index> sampled = sample_of(climb, depth.sample_soon);
   const bool at_once = sampled.empty();
   climb.look_afar(at_once);
-  for (const auto& standpoint : standpoints(climb, sampled, depth.sample_soon)) {
-    unless_it_breaks_down(try_from, standpoint);
-  }
+  const auto before = standpoints(climb, sampled, depth.sample_soon);
+  for (const auto& standpoint : before) unless_it_breaks_down(try_from, standpoint);
   const auto nothing = [&] { return climb.nothing(least_that_tells(found)); };
   const auto astray = [&] {
     if (found.empty()) return true;
@@ -113,10 +126,9 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
     return none && std::ranges::all_of(
                        found, [&](const auto& peak) { return peak.evidence <= none->evidence; });
   };
-  if (astray()) {
-    climb_from_each_start(calibrate, try_from);
-    if (calibrate && depth.to_the_last && at_once && !astray()) settle_anew(climb, found);
-  }
+  if (astray()) climb_from_each_start(calibrate, try_from);
+  climb_over_slips(climb, before, found);
+  if (calibrate && depth.to_the_last && at_once && !astray()) settle_anew(climb, found);
   for (const auto& [odometry, loops] : std::span(kStarts).subspan(kStartsAlways)) {
     if (!calibrate || !astray()) break;
     unless_it_breaks_down(try_from, CovarianceScale{odometry, loops});

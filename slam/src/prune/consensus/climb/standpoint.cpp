@@ -26,6 +26,17 @@ void follow_odometry(const ReducedGraph<Pose>& graph, Layout<Pose>& layout) {
   for (Index a = count - 1; a > 0; --a) follow(a - 1, a);
 }
 
+// An edge slips that is between the same vertices.
+Slips carry_slips(const Slips& before, std::size_t edges, const KnownBefore& known) {
+  Slips slips;
+  for (Index v = 0; !before.empty() && v < static_cast<Index>(edges); ++v) {
+    const auto from = known.vertex(v);
+    const auto to = known.vertex(v + 1);
+    slips.push_back(from && to && *to == *from + 1 ? slip_of(before, *from) : std::uint8_t{0});
+  }
+  return slips;
+}
+
 template <class Pose>
 Layout<Pose> carry_layout(const Layout<Pose>& before, const ReducedGraph<Pose>& from,
                           const ReducedGraph<Pose>& to, const KnownBefore& known) {
@@ -54,14 +65,16 @@ Standpoint<Pose> carry(const Explanation<Pose>& before,
                        const typename Assessment<Pose>::Findings& found,
                        const Objective<Pose>& objective, const KnownBefore& known) {
   Standpoint<Pose> next{{.scale = before.scale, .shapes = before.shapes, .shares = before.shares},
-                        {.shapes = before.shapes, .mixture = found.mixture}};
+                        {.mixture = found.mixture}};
   auto& [explanation, findings] = next;
+  explanation.shapes.slips = carry_slips(before.shapes.slips, objective.odometry_edges(), known);
+  findings.shapes = explanation.shapes;
   explanation.redundancy = before.redundancy;
   const double more = static_cast<double>(known.loops.size()) /
                       static_cast<double>(std::max<std::size_t>(before.accepted.size(), 1));
   for (double& share : explanation.shares.loops) share *= more;
   findings.graph = std::make_shared<ScaledGraph<Pose>>(
-      before.shapes == Shapes<Pose>{} ? objective.stated() : objective.scaled(before.shapes));
+      findings.shapes == Shapes<Pose>{} ? objective.stated() : objective.scaled(findings.shapes));
   for (const auto& loop : known.loops) {
     explanation.accepted.push_back(loop && before.accepted[*loop]);
     explanation.weights.push_back(loop ? before.weights[*loop] : LoopWeight{});

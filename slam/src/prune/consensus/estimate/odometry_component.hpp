@@ -1,10 +1,9 @@
 #pragma once
 
-#include <optional>
 #include <span>
-#include <vector>
 
 #include "prune/consensus/estimate/estimate.hpp"
+#include "prune/consensus/estimate/step_edges.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -17,28 +16,13 @@ struct OdometryComponent {
   typename Pose::Tangent redundancy = Pose::Tangent::Zero();  ///< numbers left over
 };
 
-/// One edge of an odometry chain, between a vertex and the next.
+/// At the last update of `estimate`, where the factor on all of odometry's covariances was `scale`.
+/// Many edges are contracted into a step, and an early one's error in heading is one in place at
+/// the step's end: each edge has the part of the step's error that its own covariance explains.
+/// `covariances` are those of the steps (Estimate::residual_covariances). O(edges), on `threads`
+/// threads (0: all cores).
 template <class Pose>
-struct ChainEdge {
-  Pose T;                            ///< from the vertex to the next
-  bool forward;                      ///< told from the vertex
-  typename Pose::Matrix covariance;  ///< where it is told from, as stated
-};
-
-/// That of each vertex to the next; empty where there is none.
-template <class Pose>
-std::vector<std::optional<ChainEdge<Pose>>> chain_of(const PoseGraph<Pose>& graph,
-                                                     const EdgeRoles& roles);
-
-/// Of `chain`, as reduced with the factors `shape` on its variances, at the last update of
-/// `estimate`, where the factor on all of them was `scale`. Many edges are contracted into a step,
-/// and an early one's error in heading is one in place at the step's end: each edge has the part of
-/// the step's error that its own covariance explains. `covariances` are those of the steps
-/// (Estimate::residual_covariances). O(edges), on `threads` threads (0: all cores).
-template <class Pose>
-OdometryComponent<Pose> odometry_component(const std::vector<std::optional<ChainEdge<Pose>>>& chain,
-                                           const typename Pose::Tangent& shape, double scale,
-                                           const ReducedGraph<Pose>& reduced,
+OdometryComponent<Pose> odometry_component(const ContractedChain<Pose>& odometry, double scale,
                                            const Estimate<Pose>& estimate,
                                            std::span<const typename Pose::Matrix> covariances,
                                            int threads = 1);

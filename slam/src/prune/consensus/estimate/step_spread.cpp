@@ -15,26 +15,23 @@ typename Pose::Tangent step_of(const Constraint<Pose>& edge) {
   return step;
 }
 
-}  // namespace
-
 template <class Pose>
-StepSpread step_spread(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
-  constexpr int kTurns = Pose::kDof - Pose::kDim;
+std::vector<typename Pose::Tangent> steps_of(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
   std::vector<typename Pose::Tangent> steps;
-  typename Pose::Tangent mean = Pose::Tangent::Zero();
-  for (const Index k : roles.odometry) {
-    steps.push_back(step_of(graph.constraints[k]));
-    mean += steps.back();
-  }
+  for (const Index k : roles.odometry) steps.push_back(step_of(graph.constraints[k]));
+  return steps;
+}
+
+// Of as many as are `spare`.
+template <class Pose>
+StepSpread mean_square(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                       const std::vector<typename Pose::Tangent>& steps, double spare) {
+  constexpr int kTurns = Pose::kDof - Pose::kDim;
   StepSpread spread;
-  const auto count = static_cast<double>(steps.size());
-  mean /= std::max(count, 1.0);
-  const double spare = std::max(count - 1.0, 1.0);
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const auto& information = graph.constraints[roles.odometry[i]].information;
-    const typename Pose::Tangent off = steps[i] - mean;
-    const auto moves = off.template head<Pose::kDim>();
-    const auto turns = off.template tail<kTurns>();
+    const auto moves = steps[i].template head<Pose::kDim>();
+    const auto turns = steps[i].template tail<kTurns>();
     spread.translation +=
         moves.dot(information.template topLeftCorner<Pose::kDim, Pose::kDim>() * moves) / spare;
     spread.rotation +=
@@ -43,6 +40,26 @@ StepSpread step_spread(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
   return spread;
 }
 
+}  // namespace
+
+template <class Pose>
+StepSpread step_spread(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
+  auto steps = steps_of(graph, roles);
+  const auto count = static_cast<double>(steps.size());
+  typename Pose::Tangent mean = Pose::Tangent::Zero();
+  for (const auto& step : steps) mean += step / count;
+  for (auto& step : steps) step -= mean;
+  return mean_square(graph, roles, steps, std::max(count - 1.0, 1.0));
+}
+
+template <class Pose>
+StepSpread step_length(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
+  const auto steps = steps_of(graph, roles);
+  return mean_square(graph, roles, steps, std::max(static_cast<double>(steps.size()), 1.0));
+}
+
+template StepSpread step_length(const PoseGraph<Pose2>&, const EdgeRoles&);
+template StepSpread step_length(const PoseGraph<Pose3>&, const EdgeRoles&);
 template StepSpread step_spread(const PoseGraph<Pose2>&, const EdgeRoles&);
 template StepSpread step_spread(const PoseGraph<Pose3>&, const EdgeRoles&);
 

@@ -49,7 +49,8 @@ Objective<Pose>::Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
       runs_(stated_.reduced, window),
       window_(window),
       calibrate_(calibrate),
-      most_odometry_(most_scales<Pose>(calibrate ? step_spread(graph_, roles_) : StepSpread{})) {
+      most_odometry_(most_scales<Pose>(calibrate ? step_spread(graph_, roles_) : StepSpread{})),
+      longest_slip_(most_scales<Pose>(step_length(graph_, roles_))) {
   const MapVolume<Pose> map(stated_.reduced.poses);
   log_volume_ = 0.5 * (map.variance().array().log().sum() + Pose::kDof * kLog2Pi);
   for (const auto& loop : stated_.reduced.loops) {
@@ -120,6 +121,29 @@ double Objective<Pose>::fit(const Explanation<Pose>& explanation, const ScaledGr
          log_prior(kept, explanation.accepted.size());
 }
 
+// How much less likely it is that the robot moved as a slip of each size leaves it to have, in the
+// mean of its errors: steps are about as long as those that are told, normal about no motion.
+template <class Pose>
+typename Objective<Pose>::SlipSizes Objective<Pose>::slip_excess(
+    const Explanation<Pose>& explanation) const {
+  const typename Pose::Tangent logs =
+      log_scales(explanation.scale.odometry, explanation.shapes.odometry);
+  SlipSizes excess{};
+  for (std::size_t k = 1; k < kSlipSizes; ++k) {
+    excess[k] = 0.5 * slip_factor(k) * (logs - longest_slip_).array().exp().sum();
+  }
+  return excess;
+}
+
+template <class Pose>
+typename Objective<Pose>::SlipSizes Objective<Pose>::slip_odds(
+    const Explanation<Pose>& explanation) const {
+  SlipSizes odds = log_slip_odds(explanation.shapes.slips, chain_.size());
+  const SlipSizes excess = slip_excess(explanation);
+  for (std::size_t k = 0; k < kSlipSizes; ++k) odds[k] -= excess[k];
+  return odds;
+}
+
 template <class Pose>
 double Objective<Pose>::log_scale_peak(const Explanation<Pose>& explanation) const {
   if (!calibrate_) return 0.0;
@@ -129,7 +153,10 @@ double Objective<Pose>::log_scale_peak(const Explanation<Pose>& explanation) con
   const auto& [scale, shapes, redundancy] =
       std::tie(explanation.scale, explanation.shapes, explanation.redundancy);
   const auto steps = static_cast<double>(roles_.odometry.size());
-  return peak(scale.odometry, shapes.odometry, redundancy.odometry) +
+  const SlipSizes excess = slip_excess(explanation);
+  double slips = log_prior_of(shapes.slips);
+  for (const std::uint8_t slip : shapes.slips) slips -= excess[slip];
+  return slips + peak(scale.odometry, shapes.odometry, redundancy.odometry) +
          peak(scale.loops, shapes.loops, redundancy.loops) -
          log_excess(log_scales(scale.odometry, shapes.odometry), most_odometry_, steps);
 }

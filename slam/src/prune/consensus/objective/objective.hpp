@@ -8,6 +8,7 @@
 
 #include "prune/consensus/estimate/estimate.hpp"
 #include "prune/consensus/estimate/odometry_component.hpp"
+#include "prune/consensus/estimate/slip_changes.hpp"
 #include "prune/consensus/objective/error_scales.hpp"
 #include "prune/consensus/objective/near_density.hpp"
 #include "prune/consensus/objective/runs.hpp"
@@ -96,6 +97,7 @@ class Objective {
     return scaled_graph(graph_, roles_, shapes);
   }
   const Runs<Pose>& runs() const noexcept { return runs_; }
+  std::size_t odometry_edges() const noexcept { return chain_.size(); }
 
   /// Logs of the factors on odometry's variances at most, by coordinate: of larger errors its steps
   /// would vary more than they do (StepSpread).
@@ -142,8 +144,18 @@ class Objective {
                                    const ScaledGraph<Pose>& graph, const Estimate<Pose>& estimate,
                                    std::span<const typename Pose::Matrix> covariances,
                                    int threads = 1) const {
-    return odometry_component(chain_, explanation.shapes.odometry, explanation.scale.odometry,
-                              graph.reduced, estimate, covariances, threads);
+    return odometry_component<Pose>(contracted(explanation, graph), explanation.scale.odometry,
+                                    estimate, covariances, threads);
+  }
+
+  /// Edges of odometry that are likely to err more than others, or no more. As odometry().
+  std::vector<SlipChange> slip_changes(const Explanation<Pose>& explanation,
+                                       const ScaledGraph<Pose>& graph,
+                                       const Estimate<Pose>& estimate,
+                                       std::span<const typename Pose::Matrix> covariances,
+                                       int threads = 1) const {
+    return detail::slip_changes<Pose>(contracted(explanation, graph), explanation.scale.odometry,
+                                      slip_odds(explanation), estimate, covariances, threads);
   }
 
   /// log of the volume of relative poses that the map of odometry allows.
@@ -154,23 +166,33 @@ class Objective {
   double fit(const Explanation<Pose>& explanation, const ScaledGraph<Pose>& graph,
              const Estimate<Pose>& estimate, const NearByClass& near) const;
 
-  /// log of the prior at the scales times the width of the peak there, which is as narrow as
-  /// redundancy has it, and of how likely steps of odometry are that vary as little as they do.
+  /// log of the prior at the scales and of edges that err more times the width of the peak there,
+  /// which is as narrow as redundancy has it, and of how likely steps of odometry are that vary as
+  /// little as they do.
   double log_scale_peak(const Explanation<Pose>& explanation) const;
 
  private:
+  using SlipSizes = std::array<double, kSlipSizes>;
+
+  SlipSizes slip_excess(const Explanation<Pose>& explanation) const;
+  SlipSizes slip_odds(const Explanation<Pose>& explanation) const;
+  ContractedChain<Pose> contracted(const Explanation<Pose>& explanation,
+                                   const ScaledGraph<Pose>& graph) const {
+    return {chain_, explanation.shapes.odometry, explanation.shapes.slips, graph.reduced};
+  }
   double loops_fit(const Explanation<Pose>& explanation, const ScaledGraph<Pose>& graph,
                    const Estimate<Pose>& estimate) const;
 
   PoseGraph<Pose> graph_;  // in_own_frames()
   EdgeRoles roles_;
-  std::vector<std::optional<ChainEdge<Pose>>> chain_;
+  Chain<Pose> chain_;
   ScaledGraph<Pose> stated_;
   NearDensity<Pose> near_;
   Runs<Pose> runs_;
   Index window_;
   bool calibrate_;
   typename Pose::Tangent most_odometry_;
+  typename Pose::Tangent longest_slip_;  // logs of factors as most_odometry_: as long as steps are
   double log_volume_;
   std::vector<double> log_sigma_;  // log|Sigma| of each loop
 };

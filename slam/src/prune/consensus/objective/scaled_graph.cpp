@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 #include "graph/find_root.hpp"
@@ -22,10 +23,19 @@ void apply(const typename Pose::Tangent& shape, const std::vector<Index>& edges,
 }
 
 template <class Pose>
+void apply(const Slips& slips, const std::vector<std::optional<Index>>& edges,
+           PoseGraph<Pose>& graph) {
+  for (std::size_t v = 0; v < edges.size(); ++v) {
+    if (edges[v]) graph.constraints[*edges[v]].information /= slip_factor(slips[v]);
+  }
+}
+
+template <class Pose>
 PoseGraph<Pose> with_shapes(PoseGraph<Pose> graph, const EdgeRoles& roles,
                             const Shapes<Pose>& shapes) {
   apply(shapes.odometry, roles.odometry, graph);
   apply(shapes.loops, roles.candidates, graph);
+  if (!shapes.slips.empty()) apply(shapes.slips, chain_edges(graph, roles), graph);
   return graph;
 }
 

@@ -1,22 +1,24 @@
 #pragma once
 
 #include "prune/consensus/estimate/estimate.hpp"
+#include "prune/consensus/estimate/slips.hpp"
 
 namespace isotherm::slam::detail {
 
 /// Factors on the variances of each coordinate, of product 1: files give the accuracy of
 /// translation and of rotation in units that are easily mistaken, and robots drive straighter than
-/// they tell.
+/// they tell. And of single edges of odometry.
 template <class Pose>
 struct Shapes {
   typename Pose::Tangent odometry = Pose::Tangent::Ones();
   typename Pose::Tangent loops = Pose::Tangent::Ones();
+  Slips slips;
 
   bool operator==(const Shapes&) const = default;
 
   /// To rounding.
   bool is_about(const Shapes& other) const {
-    return odometry.isApprox(other.odometry) && loops.isApprox(other.loops);
+    return odometry.isApprox(other.odometry) && loops.isApprox(other.loops) && slips == other.slips;
   }
 };
 

@@ -1,0 +1,126 @@
+#include "prune/consensus/estimate/slip_changes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "isotherm/base/random.hpp"
+#include "isotherm/slam/prune/consensus.hpp"
+#include "isotherm/slam/simulate/simulate.hpp"
+#include "prune/consensus/climb/assessment.hpp"
+#include "slam/loop_graph.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+using isotherm_test::random_loop_graph;
+
+// Of three edges, however many slip: each number of slips is as likely as the next.
+TEST(Slips, AreAsLikelyAsTheirShareMayBe) {
+  double sum = 0.0;
+  for (std::uint8_t a = 0; a < kSlipSizes; ++a) {
+    for (std::uint8_t b = 0; b < kSlipSizes; ++b) {
+      for (std::uint8_t c = 0; c < kSlipSizes; ++c) sum += std::exp(log_prior_of({a, b, c}));
+    }
+  }
+  EXPECT_NEAR(sum, 4.0, 1e-12);
+  EXPECT_EQ(log_prior_of({}), 0.0);
+  EXPECT_NEAR(log_prior_of({0, 0, 0}), 0.0, 1e-12);
+}
+
+TEST(Slips, HaveTheOddsOfOneMore) {
+  const Slips before = {0, 2, 0, 0, 1, 0};
+  const auto odds = log_slip_odds(before, before.size());
+  EXPECT_EQ(odds[0], 0.0);
+  for (std::uint8_t slip = 1; slip < kSlipSizes; ++slip) {
+    Slips after = before;
+    after[3] = slip;
+    EXPECT_NEAR(odds[slip], log_prior_of(after) - log_prior_of(before), 1e-12);
+  }
+  EXPECT_TRUE(std::isfinite(log_slip_odds({1}, 1)[1]));
+  EXPECT_TRUE(std::isfinite(log_slip_odds({}, 0)[1]));
+}
+
+template <class Pose>
+class SlipChangesOf : public testing::Test {
+ protected:
+  static constexpr Index kSlipped = 21;
+
+  // Chains of a few edges between the ends of loops, one of which errs by so many deviations.
+  SlipChangesOf() {
+    Random random(5);
+    graph_ = random_loop_graph<Pose>(random, 40, 14, 1.0, 1e12).graph;
+    auto& step = graph_.constraints[kSlipped];
+    EXPECT_EQ(step.to, kSlipped + 1);
+    step.T_from_to = step.T_from_to * Pose::exp(30e-6 * Pose::Tangent::Ones());
+  }
+
+  Explanation<Pose> everything(const Objective<Pose>& objective, Slips slips) const {
+    const std::size_t loops = objective.stated().reduced.loops.size();
+    Explanation<Pose> all{.accepted = std::vector<bool>(loops, true)};
+    all.weights.resize(loops);
+    all.shapes.slips = std::move(slips);
+    return all;
+  }
+
+  double evidence(const Objective<Pose>& objective, const Slips& slips) const {
+    const auto all = everything(objective, slips);
+    const auto graph = objective.scaled(all.shapes);
+    Estimate<Pose> estimate(graph.reduced);
+    estimate.update(all.accepted, all.scale, 20);
+    return objective.fit(all, graph, estimate, {}) + objective.log_scale_peak(all);
+  }
+
+  std::vector<SlipChange> changes(const Objective<Pose>& objective, const Slips& slips) const {
+    const auto all = everything(objective, slips);
+    const auto graph = objective.scaled(all.shapes);
+    Estimate<Pose> estimate(graph.reduced);
+    estimate.update(all.accepted, all.scale, 20);
+    std::vector<const Link<Pose>*> steps;
+    for (const auto& step : graph.reduced.steps) steps.push_back(&step);
+    return objective.slip_changes(all, graph, estimate, estimate.residual_covariances(steps));
+  }
+
+  PoseGraph<Pose> graph_;
+};
+
+using Poses = testing::Types<Pose2, Pose3>;
+TYPED_TEST_SUITE(SlipChangesOf, Poses);
+
+TYPED_TEST(SlipChangesOf, GainWhatTheEvidenceDoes) {
+  using Pose = TypeParam;
+  const Objective<Pose> objective(this->graph_, edge_roles(this->graph_), 20);
+  const Slips none(objective.odometry_edges());
+  const auto found = this->changes(objective, none);
+  ASSERT_FALSE(found.empty());
+  for (const SlipChange& change : found) {
+    Slips slips = none;
+    slips[static_cast<std::size_t>(change.vertex)] = change.slip;
+    const double gain = this->evidence(objective, slips) - this->evidence(objective, none);
+    EXPECT_NEAR(change.gain, gain, 1e-3 * std::abs(gain) + 0.1) << change.vertex;
+  }
+}
+
+TYPED_TEST(SlipChangesOf, TakeBackWhatNeedNotSlip) {
+  using Pose = TypeParam;
+  const Objective<Pose> objective(this->graph_, edge_roles(this->graph_), 20);
+  Slips slips(objective.odometry_edges());
+  slips[this->kSlipped] = 2;
+  EXPECT_TRUE(std::ranges::all_of(this->changes(objective, slips),
+                                  [](const auto& change) { return change.slip == 0; }));
+}
+
+TYPED_TEST(SlipChangesOf, NothingWhereNothingIsKnown) {
+  using Pose = TypeParam;
+  const Objective<Pose> objective(this->graph_, edge_roles(this->graph_), 20);
+  auto none = this->everything(objective, {});
+  none.accepted.assign(none.accepted.size(), false);
+  Assessment<Pose> assessment(objective);
+  assessment.assess(none);
+  EXPECT_TRUE(assessment.slip_changes(none).empty());
+}
+
+}  // namespace
+}  // namespace isotherm::slam::detail
