@@ -62,11 +62,11 @@ std::string words_of_slips(const std::vector<OdometrySlip>& slips) {
   constexpr std::size_t kNamed = 5;
   if (slips.empty()) return "";
   std::string text = fmt::format(
-      " Odometry slips {} times, where it errs ten times as much or more:", slips.size());
+      " Edges of odometry that err at least ten times as much as the others: {} (", slips.size());
   for (std::size_t k = 0; k < std::min(kNamed, slips.size()); ++k) {
-    text += fmt::format("{} {} to {}", k == 0 ? "" : ",", slips[k].from, slips[k].to);
+    text += fmt::format("{}{} to {}", k == 0 ? "" : ", ", slips[k].from, slips[k].to);
   }
-  return text + (slips.size() > kNamed ? " and more." : ".");
+  return text + (slips.size() > kNamed ? ", …)." : ").");
 }
 
 std::string words_of_scales(const ConsensusResult& result) {
