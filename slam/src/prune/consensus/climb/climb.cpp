@@ -113,11 +113,13 @@ Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
   return settle(accepted);
 }
 
-// Each loop is weighed first by what odometry says of it.
+// Each loop is weighed first by what odometry says of it, that slips where it was found to.
 template <class Pose>
 Explanation<Pose> Climb<Pose>::settled_near(const Explanation<Pose>& found,
                                             const CovarianceScale& scale) {
-  start(none_at(scale));
+  Explanation<Pose> none = none_at(scale);
+  none.shapes.slips = found.shapes.slips;
+  start(std::move(none));
   assessment_.stand_on(found.layout);
   return settle(found.accepted);
 }
