@@ -58,7 +58,7 @@ MOVES = {
                    "if ({off}) break;"),
     "loops weighed by the others": (CLIMB, "::weigh_by_others() {\n", "if ({off}) return false;"),
     "the look afar": (CLIMB, "::weigh_afar() {\n", "if ({off}) return false;"),
-    "slips of odometry": (CLIMB, "::find_slips(double gain) {\n", "if ({off}) return false;"),
+    "slips of odometry": (CLIMB, "::find_slips() {\n", "if ({off}) return false;"),
     "climbs that look for slips first":
         ("climb/search.cpp", "best_of(found).accepts_all()) return;\n", "if ({off}) return;"),
     "coordinates leveled beside slips":

@@ -298,9 +298,6 @@ TYPED_TEST(ConsensusOf, LearnsThatInformationIsOverconfident) {
   EXPECT_GE(count(result.verdicts, Verdict::keep), 148);
 }
 
-// Every loop that is kept fits the least-squares solution of what is kept, found by
-// another solver: nothing accepted early is left unchecked once loops are dropped or
-// the scales change.
 // Twenty deviations in a step of fifty: all others would have to err seven times as much.
 TYPED_TEST(ConsensusOf, FindsWhereOdometrySlips) {
   using Pose = TypeParam;
@@ -337,6 +334,9 @@ TYPED_TEST(ConsensusOf, OdometryThatErrsAsStatedDoesNotSlip) {
   }
 }
 
+// Every loop that is kept fits the least-squares solution of what is kept, found by
+// another solver: nothing accepted early is left unchecked once loops are dropped or
+// the scales change.
 TYPED_TEST(ConsensusOf, WhatIsKeptFitsItsOptimum) {
   using Pose = TypeParam;
   Random random(41);

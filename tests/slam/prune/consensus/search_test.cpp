@@ -144,7 +144,6 @@ TEST(Search, FindsNoLessThanKnowingTheLoopsWould) {
   }
 }
 
-// Covariances that are stated a hundred times too large or small, both alike.
 TEST(Search, NotToTheLastEndsWithAClimbThatExplainsAll) {
   const auto city = simulate_city({.poses = 600, .measurements = {.loops = 150}, .seed = 3});
   const Objective<Pose2> objective(city.graph, edge_roles(city.graph), kWindow);
@@ -155,6 +154,7 @@ TEST(Search, NotToTheLastEndsWithAClimbThatExplainsAll) {
   EXPECT_EQ(climb.moves().size(), first.moves().size());
 }
 
+// Covariances that are stated a hundred times too large or small, both alike.
 TEST(Search, FindsAllTrueWhateverTheUnits) {
   for (const double factor : {0.01, 1.0, 100.0}) {
     Random random(6);

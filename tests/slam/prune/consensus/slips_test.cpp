@@ -7,14 +7,14 @@
 #include <gtest/gtest.h>
 
 #include "isotherm/base/random.hpp"
-#include "isotherm/slam/prune/consensus.hpp"
-#include "isotherm/slam/simulate/simulate.hpp"
 #include "prune/consensus/climb/assessment.hpp"
 #include "slam/loop_graph.hpp"
+#include "slam/prune/consensus/all_accepted.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
 
+using isotherm_test::AllAccepted;
 using isotherm_test::random_loop_graph;
 
 // Of three edges, however many slip: each number of slips is as likely as the next.
@@ -57,30 +57,14 @@ class SlipChangesOf : public testing::Test {
     step.T_from_to = step.T_from_to * Pose::exp(30e-6 * Pose::Tangent::Ones());
   }
 
-  Explanation<Pose> everything(const Objective<Pose>& objective, Slips slips) const {
-    const std::size_t loops = objective.stated().reduced.loops.size();
-    Explanation<Pose> all{.accepted = std::vector<bool>(loops, true)};
-    all.weights.resize(loops);
-    all.shapes.slips = std::move(slips);
-    return all;
+  static double evidence(const Objective<Pose>& objective, const Slips& slips) {
+    return AllAccepted<Pose>(objective, {}, {.slips = slips}).evidence();
   }
 
-  double evidence(const Objective<Pose>& objective, const Slips& slips) const {
-    const auto all = everything(objective, slips);
-    const auto graph = objective.scaled(all.shapes);
-    Estimate<Pose> estimate(graph.reduced);
-    estimate.update(all.accepted, all.scale, 20);
-    return objective.fit(all, graph, estimate, {}) + objective.log_scale_peak(all);
-  }
-
-  std::vector<SlipChange> changes(const Objective<Pose>& objective, const Slips& slips) const {
-    const auto all = everything(objective, slips);
-    const auto graph = objective.scaled(all.shapes);
-    Estimate<Pose> estimate(graph.reduced);
-    estimate.update(all.accepted, all.scale, 20);
-    std::vector<const Link<Pose>*> steps;
-    for (const auto& step : graph.reduced.steps) steps.push_back(&step);
-    return objective.slip_changes(all, graph, estimate, estimate.residual_covariances(steps));
+  static std::vector<SlipChange> changes(const Objective<Pose>& objective, const Slips& slips) {
+    const AllAccepted<Pose> all(objective, {}, {.slips = slips});
+    return objective.slip_changes(all.explanation(), all.graph(), all.estimate(),
+                                  all.covariances());
   }
 
   PoseGraph<Pose> graph_;
@@ -115,8 +99,8 @@ TYPED_TEST(SlipChangesOf, TakeBackWhatNeedNotSlip) {
 TYPED_TEST(SlipChangesOf, NothingWhereNothingIsKnown) {
   using Pose = TypeParam;
   const Objective<Pose> objective(this->graph_, edge_roles(this->graph_), 20);
-  auto none = this->everything(objective, {});
-  none.accepted.assign(none.accepted.size(), false);
+  Explanation<Pose> none{.accepted = std::vector<bool>(14, false)};
+  none.weights.resize(none.accepted.size());
   Assessment<Pose> assessment(objective);
   assessment.assess(none);
   EXPECT_TRUE(assessment.slip_changes(none).empty());

@@ -86,7 +86,7 @@ Explanation<Pose> Climb<Pose>::resume(Standpoint<Pose> standpoint) {
   for (int round = 0; round < options_.max_rounds && vain < kMostVain; ++round) {
     tell_progress();
     const double highest = best_.evidence;
-    if (!shift() && !learn_more_than(0.0) && !find_slips(0.0)) break;
+    if (!shift() && !learn_more_than(0.0) && !find_slips()) break;
     vain = best_.evidence > highest + kBetter ? 0 : vain + 1;
   }
   peaks_.push_back(best_);
@@ -128,7 +128,7 @@ template <class Pose>
 const Explanation<Pose>& Climb<Pose>::settle(const std::vector<bool>& accepted) {
   now_.accepted = accepted;
   assess();
-  while (learn_more_than(0.0) || weigh_anew() || find_slips(0.0)) {
+  while (learn_more_than(0.0) || weigh_anew() || find_slips()) {
   }
   return now_;
 }
@@ -248,7 +248,7 @@ const Explanation<Pose>* Climb<Pose>::grow() {
 // False where no move is left.
 template <class Pose>
 bool Climb<Pose>::move() {
-  return shift() || learn_more_than(0.0) || weigh_anew() || find_slips(0.0) ||
+  return shift() || learn_more_than(0.0) || weigh_anew() || find_slips() ||
          once(Trial::undecided, [this] { return accept_undecided(); }) ||
          once(Trial::doubtful, [this] { return drop_undecided(); });
 }
@@ -262,7 +262,7 @@ bool Climb<Pose>::shift() {
   if (!batch.loops.empty() && batch.gain > dropping) {
     accept(batch.loops);
   } else if (!out.empty()) {
-    if (!learn_more_than(dropping) && !(slips_first_ && find_slips(dropping))) drop(out);
+    if (!learn_more_than(dropping) && !(slips_first_ && slips_gain(dropping))) drop(out);
   } else {
     return false;
   }
@@ -464,25 +464,35 @@ bool Climb<Pose>::learn_more_than(double gain) {
   return false;
 }
 
-// Whether edges that err more than others, or no more, gain more than this, or else nothing
-// changes. All that gain at least half of what the one does that gains most, since each explains a
-// part of what others would, or else that one; until none gains, before loops are accepted that a
-// slip too many leaves room for.
+// All edges that gain at least half of what the one does that gains most by erring more than
+// others, or no more, since each explains a part of what others would; or else that one.
 template <class Pose>
-bool Climb<Pose>::find_slips(double gain) {
+bool Climb<Pose>::try_best_slips() {
+  auto changes = assessment_.slip_changes(now_);
+  std::ranges::sort(changes, std::greater{}, &SlipChange::gain);
+  std::size_t count = 0;
+  while (count < changes.size() && changes[count].gain >= 0.5 * changes.front().gain) ++count;
+  const std::span all(changes);
+  return count > 0 && (try_slips(all.first(count)) || try_slips(all.first(1)));
+}
+
+// Until none gains, before loops are accepted that a slip too many leaves room for.
+template <class Pose>
+bool Climb<Pose>::find_slips() {
   if (!options_.calibrate || failed_[Trial::slips]) return false;
+  bool found = false;
+  while (try_best_slips()) found = true;
+  failed_[Trial::slips] = !found;
+  return found;
+}
+
+// Whether slips gain more than this, or else nothing changes.
+template <class Pose>
+bool Climb<Pose>::slips_gain(double gain) {
   const Place before = place();
-  for (;;) {
-    auto changes = assessment_.slip_changes(now_);
-    std::ranges::sort(changes, std::greater{}, &SlipChange::gain);
-    std::size_t count = 0;
-    while (count < changes.size() && changes[count].gain >= 0.5 * changes.front().gain) ++count;
-    const std::span all(changes);
-    if (count == 0 || (!try_slips(all.first(count)) && !try_slips(all.first(1)))) break;
-  }
+  if (!find_slips()) return false;
   if (now_.evidence > before.now.evidence + gain) return true;
-  if (now_.evidence > before.now.evidence) go_back(before);
-  failed_[Trial::slips] = gain <= 0.0;
+  go_back(before);
   return false;
 }
 

@@ -141,7 +141,9 @@ class Climb {
   void accept(const Selection& loops);
   bool try_all_as(const Selection& loops, bool accepted);
   bool learn_more_than(double gain);
-  bool find_slips(double gain);
+  bool find_slips();
+  bool slips_gain(double gain);
+  bool try_best_slips();
   bool level_odometry();
   bool try_slips(std::span<const SlipChange> changes);
   bool once(Trial trial, const std::function<bool()>& move);

@@ -34,15 +34,15 @@ struct EdgeError {
   Tangent pull;
 };
 
+// The size other than `now` that gains most of an edge, where that is more than `best` does.
 template <class Pose>
-void take_better(const EdgeError<Pose>& edge, const LogOdds& log_odds, std::uint8_t now,
-                 SlipChange& best) {
-  const Index vertex = best.vertex;
+void take_better(const EdgeError<Pose>& edge, const LogOdds& log_odds, Index vertex,
+                 std::uint8_t now, std::optional<SlipChange>& best) {
   for (std::uint8_t slip = 0; slip < kSlipSizes; ++slip) {
     if (slip == now) continue;
     const double gain =
         edge.gain(slip_factor(slip) / slip_factor(now)) + log_odds[slip] - log_odds[now];
-    if (gain > best.gain) best = {vertex, slip, gain};
+    if (gain > (best ? best->gain : 0.0)) best = {vertex, slip, gain};
   }
 }
 
@@ -75,11 +75,8 @@ std::optional<SlipChange> best_change(const ContractedChain<Pose>& odometry, std
   }
   std::optional<SlipChange> best;
   visit_edges(odometry, k, [&](Index vertex, const Matrix& carry, const Matrix& Sigma) {
-    SlipChange here{vertex, 0, best ? best->gain : 0.0};
-    const double before = here.gain;
     const EdgeError<Pose> edge(error, carry, Sigma, scale);
-    take_better(edge, log_odds, slip_of(odometry.slips, vertex), here);
-    if (here.gain > before) best = here;
+    take_better(edge, log_odds, vertex, slip_of(odometry.slips, vertex), best);
   });
   return best;
 }
