@@ -32,6 +32,7 @@ TEST(ScaleShares, GoFromScaleToScaleWithMost) {
   const auto wider = wider_most({{8.0, 4.0, 2.0, 1.0}});
   EXPECT_EQ(wider.shares.loops, (ByScale{12.0, 2.0, 0.0, 1.0}));
   EXPECT_DOUBLE_EQ(wider.factor, 3.0);
+  EXPECT_EQ(all_as_most({{1.0, 2.0, 4.0, 1.0}}).loops, (ByScale{8.0, 0.0, 0.0, 0.0}));
   const auto widest = all_as_worst({{1.0, 2.0, 4.0, 1.0}});
   EXPECT_EQ(widest.shares.loops, (ByScale{7.0, 0.0, 0.0, 1.0}));
   EXPECT_DOUBLE_EQ(widest.factor, 9.0);

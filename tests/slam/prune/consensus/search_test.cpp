@@ -105,6 +105,54 @@ TYPED_TEST(CarryOf, OfSomeLoopsLeadsToThePeakOfAll) {
   EXPECT_NEAR(all.from(there).evidence, from_nothing, 2.0 * kBetter);
 }
 
+template <class Pose>
+class SlippingOf : public testing::Test {};
+TYPED_TEST_SUITE(SlippingOf, Poses);
+
+// Loops are a tenth as far off as stated; those over an edge that slips pass for that far off.
+TYPED_TEST(SlippingOf, FindsWhatLoopsThatPassForWorseHide) {
+  using Pose = TypeParam;
+  constexpr Index kSlipped = 75;
+  Random random(12);
+  auto graph = random_loop_graph<Pose>(random, 150, 80, 1.0).graph;
+  auto& step = graph.constraints[kSlipped];
+  ASSERT_EQ(std::abs(step.to - step.from), 1);
+  const typename Pose::Matrix deviation =
+      Eigen::LLT<typename Pose::Matrix>(step.information.inverse()).matrixL();
+  step.T_from_to = step.T_from_to * Pose::exp(20.0 * (deviation * Pose::Tangent::Ones()));
+  const auto roles = edge_roles(graph);
+  for (const Index k : roles.candidates) graph.constraints[k].information *= 0.01;
+  const Objective<Pose> objective(graph, roles, kWindow);
+  Climb<Pose> climb(objective, kOptions, kSilent);
+  const auto told = climb.settled_on(std::vector<bool>(80, true), {1.0, 0.01});
+  ASSERT_GT(slip_of(told.shapes.slips, kSlipped), 0);
+
+  auto hidden = told;
+  hidden.shapes.slips.clear();
+  for (std::size_t k = 0; k < 80; ++k) {
+    const auto& link = graph.constraints[static_cast<std::size_t>(roles.candidates[k])];
+    const auto [first, last] = std::minmax(link.from, link.to);
+    if (first <= kSlipped && kSlipped < last) hidden.weights[k] = {.learnt = 0.0, .stated = 1.0};
+  }
+  Climb<Pose> other(objective, kOptions, kSilent);
+  const auto found = other.slipping(hidden);
+  EXPECT_EQ(found.shapes.slips, told.shapes.slips);
+  EXPECT_NEAR(found.evidence, told.evidence, kBetter);
+}
+
+TYPED_TEST(SlippingOf, GoesBackWhereNothingSlips) {
+  using Pose = TypeParam;
+  Random random(13);
+  const auto made = random_loop_graph<Pose>(random, 150, 80, 1.0);
+  const Objective<Pose> objective(made.graph, edge_roles(made.graph), kWindow);
+  Climb<Pose> climb(objective, kOptions, kSilent);
+  const auto before = climb.from(CovarianceScale{});
+  const auto after = climb.slipping(before);
+  EXPECT_EQ(after.evidence, before.evidence);
+  EXPECT_EQ(after.accepted, before.accepted);
+  EXPECT_EQ(after.shapes, before.shapes);
+}
+
 // Of loops in thousands, half of them false in groups. Either stops short of its peak by what one
 // more lesson would gain, of odometry, of loops or of their kinds.
 TEST(Search, OnASampleFindsWhatClimbsFromEachStartFind) {

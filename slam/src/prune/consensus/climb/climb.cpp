@@ -103,6 +103,12 @@ void Climb<Pose>::stand_at(const Explanation<Pose>& found) {
   assess();
 }
 
+template <class Pose>
+Explanation<Pose> Climb<Pose>::slipping(const Explanation<Pose>& found) {
+  stand_on({found, assessment_.findings()});
+  return slip_as_if_accurate() ? climb() : found;
+}
+
 // Grows to them first, the most certain before the rest, so that poses come near.
 template <class Pose>
 Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
@@ -308,8 +314,7 @@ bool Climb<Pose>::weigh_afar() {
 template <class Pose>
 bool Climb<Pose>::weigh_anew() {
   return once(Trial::weights_by_others, [this] { return weigh_by_others(); }) ||
-         once(Trial::afar, [this] { return weigh_afar(); }) ||
-         once(Trial::level, [this] { return level_odometry(); });
+         once(Trial::afar, [this] { return weigh_afar(); });
 }
 
 // All loops that are not false beyond doubt, by twice the log odds that a verdict takes: where a
@@ -467,8 +472,9 @@ bool Climb<Pose>::learn_more_than(double gain) {
 // All edges that gain at least half of what the one does that gains most by erring more than
 // others, or no more, since each explains a part of what others would; or else that one.
 template <class Pose>
-bool Climb<Pose>::try_best_slips() {
+bool Climb<Pose>::try_best_slips(double least) {
   auto changes = assessment_.slip_changes(now_);
+  std::erase_if(changes, [least](const SlipChange& change) { return change.gain < least; });
   std::ranges::sort(changes, std::greater{}, &SlipChange::gain);
   std::size_t count = 0;
   while (count < changes.size() && changes[count].gain >= 0.5 * changes.front().gain) ++count;
@@ -496,11 +502,25 @@ bool Climb<Pose>::slips_gain(double gain) {
   return false;
 }
 
-// Coordinates that an edge slips in seem to err more than others, until that is known.
+// Slips that are beyond doubt were all loops as accurate as most, and odometry in all coordinates.
 template <class Pose>
-bool Climb<Pose>::level_odometry() {
-  if (now_.shapes.slips.empty() || !options_.calibrate) return false;
-  return try_with([](auto& now) { now.shapes.odometry.setOnes(); }, {.learning = true});
+bool Climb<Pose>::slip_as_if_accurate() {
+  const Place before = place();
+  now_.shares = all_as_most(now_.shares);
+  now_.weights.assign(now_.weights.size(), {});
+  now_.shapes.odometry.setOnes();
+  bool better = false;
+  try {
+    assess();
+    bool found = false;
+    while (try_best_slips(log_odds_of(1.0 - options_.significance))) found = true;
+    now_.shares = before.now.shares;
+    better = found && settle(now_.accepted).evidence > before.now.evidence + kBetter;
+  } catch (const NumericalError&) {
+    better = false;
+  }
+  if (!better) go_back(before);
+  return better;
 }
 
 template <class Pose>

@@ -71,6 +71,11 @@ class Climb {
   /// Of the explanation that the last call ended at.
   const Assessment<Pose>& assessment() const noexcept { return assessment_; }
 
+  /// On from there with edges of odometry that slip as its loops say if they are accurate, where
+  /// that explains them better: around an edge that slips they look less accurate than others, and
+  /// where they are taken for that nothing speaks for a slip.
+  Explanation<Pose> slipping(const Explanation<Pose>& found);
+
   /// What explains best that exactly these loops are true, from `start`.
   Explanation<Pose> settled_on(const std::vector<bool>& accepted, const CovarianceScale& start);
 
@@ -90,7 +95,6 @@ class Climb {
     lesson,
     lesson_of_scales,
     slips,
-    level,
     weights_by_others,
     afar,
     undecided,
@@ -143,8 +147,8 @@ class Climb {
   bool learn_more_than(double gain);
   bool find_slips();
   bool slips_gain(double gain);
-  bool try_best_slips();
-  bool level_odometry();
+  bool try_best_slips(double least = 0.0);
+  bool slip_as_if_accurate();
   bool try_slips(std::span<const SlipChange> changes);
   bool once(Trial trial, const std::function<bool()>& move);
   bool weigh_anew();

@@ -127,6 +127,9 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
                        found, [&](const auto& peak) { return peak.evidence <= none->evidence; });
   };
   if (astray()) climb_from_each_start(calibrate, try_from);
+  if (calibrate && !astray() && (at_once || !all_explained())) {
+    found.push_back(climb.slipping(best_of(found)));
+  }
   climb_over_slips(climb, before, found);
   if (calibrate && depth.to_the_last && at_once && !astray()) settle_anew(climb, found);
   for (const auto& [odometry, loops] : std::span(kStarts).subspan(kStartsAlways)) {

@@ -53,6 +53,10 @@ ScaleShift sharper_most(const ScaleShares& shares) {
   return {1.0 / kScaleStep, {{0.5 * most, 0.5 * most, worse + worst, stated}}};
 }
 
+ScaleShares all_as_most(const ScaleShares& shares) {
+  return {{sum_of(shares.loops), 0.0, 0.0, 0.0}};
+}
+
 ScaleShift all_as_worst(const ScaleShares& shares) {
   const auto& [most, worse, worst, stated] = shares.loops;
   return {kWorst, {{most + worse + worst, 0.0, 0.0, stated}}};

@@ -57,6 +57,9 @@ ScaleShift wider_most(const ScaleShares& shares);
 /// One a step below, of which half of most are.
 ScaleShift sharper_most(const ScaleShares& shares);
 
+/// All as accurate as most.
+ScaleShares all_as_most(const ScaleShares& shares);
+
 /// The worst, of which all are.
 ScaleShift all_as_worst(const ScaleShares& shares);
 
