@@ -23,6 +23,17 @@ bool is_part(const std::vector<bool>& part, const std::vector<bool>& whole) {
   return true;
 }
 
+// Whether an accepted loop is taken for less accurate than most.
+template <class Pose>
+bool any_is_worse(const Explanation<Pose>& found) {
+  const ScaleMixture mixture = found.mixture();
+  for (std::size_t k = 0; k < found.accepted.size(); ++k) {
+    const double factor = mixture.factor(found.weights[k]);
+    if (found.accepted[k] && are_of_different_scales(factor, 1.0)) return true;
+  }
+  return false;
+}
+
 // Takes the scales of a lesson or of another explanation.
 template <class Found>
 auto scales_of(const Found& found) {
@@ -105,6 +116,7 @@ void Climb<Pose>::stand_at(const Explanation<Pose>& found) {
 
 template <class Pose>
 Explanation<Pose> Climb<Pose>::slipping(const Explanation<Pose>& found) {
+  if (!any_is_worse(found)) return found;
   stand_on({found, assessment_.findings()});
   return slip_as_if_accurate() ? climb() : found;
 }
@@ -526,10 +538,12 @@ bool Climb<Pose>::slip_as_if_accurate() {
 template <class Pose>
 bool Climb<Pose>::try_slips(std::span<const SlipChange> changes) {
   return try_with([&](auto& now) {
-    now.shapes.slips.resize(objective_.odometry_edges());
+    Slips& changed = now.shapes.slips;
+    changed.resize(objective_.odometry_edges());
     for (const SlipChange& change : changes) {
-      now.shapes.slips[static_cast<std::size_t>(change.vertex)] = change.slip;
+      changed[static_cast<std::size_t>(change.vertex)] = change.slip;
     }
+    if (!any_slips(changed)) changed.clear();
   });
 }
 

@@ -55,13 +55,6 @@ bool explained(const StepError<Pose>& error, double scale, const LogOdds& log_od
          0.5 * error.pull.dot(spare.solve(error.pull)) / scale < -log_odds[1];
 }
 
-bool any_slips(const Slips& slips, Index begin, Index end) {
-  for (Index v = begin; v < end; ++v) {
-    if (slip_of(slips, v) > 0) return true;
-  }
-  return false;
-}
-
 template <class Pose>
 std::optional<SlipChange> best_change(const ContractedChain<Pose>& odometry, std::size_t k,
                                       const StepError<Pose>& error, double scale,
@@ -69,10 +62,11 @@ std::optional<SlipChange> best_change(const ContractedChain<Pose>& odometry, std
   using Matrix = typename Pose::Matrix;
   const auto& [chain, shape, slips, reduced] = odometry;
   const auto& step = reduced.steps[k];
-  if (explained(error, scale, log_odds) &&
-      !any_slips(slips, reduced.vertex[step.a], reduced.vertex[step.b])) {
-    return std::nullopt;
-  }
+  const Index first = reduced.vertex[step.a];
+  const auto edges = static_cast<std::size_t>(reduced.vertex[step.b] - first);
+  const bool slipped =
+      !slips.empty() && any_slips(std::span(slips).subspan(static_cast<std::size_t>(first), edges));
+  if (!slipped && explained(error, scale, log_odds)) return std::nullopt;
   std::optional<SlipChange> best;
   visit_edges(odometry, k, [&](Index vertex, const Matrix& carry, const Matrix& Sigma) {
     const EdgeError<Pose> edge(error, carry, Sigma, scale);

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "isotherm/slam/graph/pose_graph.hpp"
@@ -20,6 +22,10 @@ inline constexpr std::size_t kSlipSizes = 5;  ///< with none; the largest is kMo
 
 inline std::uint8_t slip_of(const Slips& slips, Index vertex) {
   return slips.empty() ? std::uint8_t{0} : slips[static_cast<std::size_t>(vertex)];
+}
+
+inline bool any_slips(std::span<const std::uint8_t> slips) {
+  return std::ranges::any_of(slips, [](std::uint8_t slip) { return slip > 0; });
 }
 
 /// On its variances.
