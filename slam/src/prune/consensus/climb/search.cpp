@@ -127,6 +127,7 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
                        found, [&](const auto& peak) { return peak.evidence <= none->evidence; });
   };
   if (astray()) climb_from_each_start(calibrate, try_from);
+  // Of thousands of loops that are all explained a slip would change no verdict.
   if (calibrate && !astray() && (at_once || !all_explained())) {
     found.push_back(climb.slipping(best_of(found)));
   }
