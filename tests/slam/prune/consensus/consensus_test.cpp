@@ -298,6 +298,14 @@ TYPED_TEST(ConsensusOf, LearnsThatInformationIsOverconfident) {
   EXPECT_GE(count(result.verdicts, Verdict::keep), 148);
 }
 
+/// Adds so many of an edge's own deviations to what it measures, in each coordinate.
+template <class Pose>
+void slip(Constraint<Pose>& step, double deviations) {
+  const typename Pose::Matrix deviation =
+      Eigen::LLT<typename Pose::Matrix>(step.information.inverse()).matrixL();
+  step.T_from_to = step.T_from_to * Pose::exp(deviations * (deviation * Pose::Tangent::Ones()));
+}
+
 // Twenty deviations in a step of fifty: all others would have to err seven times as much.
 TYPED_TEST(ConsensusOf, FindsWhereOdometrySlips) {
   using Pose = TypeParam;
@@ -307,9 +315,7 @@ TYPED_TEST(ConsensusOf, FindsWhereOdometrySlips) {
   for (Index k = 20; k < 140; k += 50) {
     auto& step = graph.constraints[k];
     ASSERT_EQ(std::abs(step.to - step.from), 1);
-    const typename Pose::Matrix deviation =
-        Eigen::LLT<typename Pose::Matrix>(step.information.inverse()).matrixL();
-    step.T_from_to = step.T_from_to * Pose::exp(20.0 * (deviation * Pose::Tangent::Ones()));
+    slip(step, 20.0);
     slipped.push_back(graph.ids[std::min(step.from, step.to)]);
   }
   const auto result = consensus(graph, edge_roles(graph), {}, {.threads = 1});
@@ -322,6 +328,28 @@ TYPED_TEST(ConsensusOf, FindsWhereOdometrySlips) {
   }
   EXPECT_EQ(found, slipped);
   EXPECT_LT(result.odometry_scale, 2.0);
+}
+
+// Each of the five loops over it is refuted by itself. Together they say that it slipped.
+TYPED_TEST(ConsensusOf, BelievesLoopsThatTogetherTellASlip) {
+  using Pose = TypeParam;
+  constexpr Index kSlipped = 100;
+  Random random(14);
+  auto [graph, truth] = random_loop_graph<Pose>(random, 200, 0, 1.0);
+  for (Index v = 0; v < 184; v += 3) {
+    auto loop = graph.constraints[v];
+    const auto error = isotherm_test::random_error<Pose>(random, loop.information, 1.0);
+    loop.from = v;
+    loop.to = v + 15;
+    loop.T_from_to = truth[v].between(truth[v + 15]) * Pose::exp(error);
+    graph.constraints.push_back(loop);
+  }
+  slip(graph.constraints[kSlipped], 40.0);
+  const auto result = consensus(graph, edge_roles(graph), {}, {.threads = 1});
+  EXPECT_EQ(count(result.verdicts, Verdict::prune), 0);
+  ASSERT_EQ(result.odometry_slips.size(), 1U);
+  const auto from = graph.find(result.odometry_slips.front().from);
+  EXPECT_EQ(*from / 3, kSlipped / 3);  // no loop ends between
 }
 
 TYPED_TEST(ConsensusOf, OdometryThatErrsAsStatedDoesNotSlip) {

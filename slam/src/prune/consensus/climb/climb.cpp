@@ -116,9 +116,13 @@ void Climb<Pose>::stand_at(const Explanation<Pose>& found) {
 
 template <class Pose>
 Explanation<Pose> Climb<Pose>::slipping(const Explanation<Pose>& found) {
-  if (!any_is_worse(found)) return found;
+  const bool hidden = any_is_worse(found);
+  const bool rejected = looks_afar_ && !found.accepts_all();
+  if (!hidden && !rejected) return found;
   stand_on({found, assessment_.findings()});
-  return slip_as_if_accurate() ? climb() : found;
+  const bool unhidden = hidden && slip_as_if_accurate();
+  const bool believed = rejected && slip_for_rejected();
+  return unhidden || believed ? climb() : found;
 }
 
 // Grows to them first, the most certain before the rest, so that poses come near.
@@ -280,7 +284,8 @@ bool Climb<Pose>::shift() {
   if (!batch.loops.empty() && batch.gain > dropping) {
     accept(batch.loops);
   } else if (!out.empty()) {
-    if (!learn_more_than(dropping) && !(slips_first_ && slips_gain(dropping))) drop(out);
+    const auto slip = [this] { return find_slips(); };
+    if (!learn_more_than(dropping) && !(slips_first_ && gain_together(slip, dropping))) drop(out);
   } else {
     return false;
   }
@@ -504,35 +509,68 @@ bool Climb<Pose>::find_slips() {
   return found;
 }
 
-// Whether slips gain more than this, or else nothing changes.
+// Whether the moves gain more than this in all, or else nothing changes. As try_with().
 template <class Pose>
-bool Climb<Pose>::slips_gain(double gain) {
+bool Climb<Pose>::gain_together(const std::function<bool()>& moves, double gain) {
   const Place before = place();
-  if (!find_slips()) return false;
-  if (now_.evidence > before.now.evidence + gain) return true;
-  go_back(before);
-  return false;
-}
-
-// Slips that are beyond doubt were all loops as accurate as most, and odometry in all coordinates.
-template <class Pose>
-bool Climb<Pose>::slip_as_if_accurate() {
-  const Place before = place();
-  now_.shares = all_as_most(now_.shares);
-  now_.weights.assign(now_.weights.size(), {});
-  now_.shapes.odometry.setOnes();
   bool better = false;
   try {
-    assess();
-    bool found = false;
-    while (try_best_slips(log_odds_of(1.0 - options_.significance))) found = true;
-    now_.shares = before.now.shares;
-    better = found && settle(now_.accepted).evidence > before.now.evidence + kBetter;
+    better = moves() && now_.evidence > before.now.evidence + gain;
   } catch (const NumericalError&) {
     better = false;
   }
   if (!better) go_back(before);
   return better;
+}
+
+// Slips that are beyond doubt were all loops as accurate as most, and odometry in all coordinates.
+template <class Pose>
+bool Climb<Pose>::slip_as_if_accurate() {
+  return gain_together([this] {
+    const ScaleShares shares = std::exchange(now_.shares, all_as_most(now_.shares));
+    now_.weights.assign(now_.weights.size(), {});
+    now_.shapes.odometry.setOnes();
+    assess();
+    bool found = false;
+    while (try_best_slips(log_odds_of(1.0 - options_.significance))) found = true;
+    now_.shares = shares;
+    if (found) settle(now_.accepted);
+    return found;
+  });
+}
+
+// Runs of rejected loops that together explain more with an edge that slips, until eight in a row
+// do not: the likeliest first.
+template <class Pose>
+bool Climb<Pose>::slip_for_rejected() {
+  auto runs = groups(open());
+  std::ranges::stable_sort(runs, std::greater{}, &Group::gain);
+  bool any = false;
+  int vain = 0;
+  for (const Group& run : runs) {
+    const Index first = run.loops.front();
+    if (now_.accepted[first] || !now_.standings[first].connected()) continue;
+    const bool gains = slip_for(run.loops);
+    any = any || gains;
+    vain = gains ? 0 : vain + 1;
+    if (vain == kMostVain) break;
+  }
+  return any;
+}
+
+// Whether it gains that these are true and odometry slips.
+template <class Pose>
+bool Climb<Pose>::slip_for(const Selection& loops) {
+  return gain_together([&] {
+    const double before = now_.evidence;
+    std::fill(dropped_.begin(), dropped_.end(), false);
+    for (const Index k : loops) now_.accepted[k] = true;
+    assess();
+    if (!try_best_slips()) return false;
+    while (now_.evidence <= before && (try_best_slips() || shift())) {
+    }
+    return true;
+  });
 }
 
 template <class Pose>

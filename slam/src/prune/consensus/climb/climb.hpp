@@ -146,9 +146,11 @@ class Climb {
   bool try_all_as(const Selection& loops, bool accepted);
   bool learn_more_than(double gain);
   bool find_slips();
-  bool slips_gain(double gain);
+  bool gain_together(const std::function<bool()>& moves, double gain = kBetter);
   bool try_best_slips(double least = 0.0);
   bool slip_as_if_accurate();
+  bool slip_for_rejected();
+  bool slip_for(const Selection& loops);
   bool try_slips(std::span<const SlipChange> changes);
   bool once(Trial trial, const std::function<bool()>& move);
   bool weigh_anew();
