@@ -116,6 +116,7 @@ void Climb<Pose>::stand_at(const Explanation<Pose>& found) {
 
 template <class Pose>
 Explanation<Pose> Climb<Pose>::slipping(const Explanation<Pose>& found) {
+  doubted_.clear();
   const bool hidden = any_is_worse(found);
   const bool rejected = looks_afar_ && !found.accepts_all();
   if (!hidden && !rejected) return found;
@@ -558,7 +559,8 @@ bool Climb<Pose>::slip_for_rejected() {
   return any;
 }
 
-// Whether it gains that these are true and odometry slips.
+// Whether it gains that these are true and odometry slips. Else it is what explains them best, and
+// how much worse that is says how likely they are.
 template <class Pose>
 bool Climb<Pose>::slip_for(const Selection& loops) {
   return gain_together([&] {
@@ -567,8 +569,11 @@ bool Climb<Pose>::slip_for(const Selection& loops) {
     for (const Index k : loops) now_.accepted[k] = true;
     assess();
     if (!try_best_slips()) return false;
+    Explanation<Pose> best = now_;
     while (now_.evidence <= before && (try_best_slips() || shift())) {
+      if (now_.accepted[loops.front()] && now_.evidence > best.evidence) best = now_;
     }
+    if (now_.evidence <= before) doubted_.push_back(std::move(best));
     return true;
   });
 }

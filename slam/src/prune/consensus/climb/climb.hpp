@@ -76,6 +76,10 @@ class Climb {
   /// where they are taken for that nothing speaks for a slip.
   Explanation<Pose> slipping(const Explanation<Pose>& found);
 
+  /// What explains best that runs of loops are true which odometry would have to slip for, but
+  /// worse than that they are false: of the last call of slipping().
+  const std::vector<Explanation<Pose>>& doubted() const noexcept { return doubted_; }
+
   /// What explains best that exactly these loops are true, from `start`.
   Explanation<Pose> settled_on(const std::vector<bool>& accepted, const CovarianceScale& start);
 
@@ -177,6 +181,7 @@ class Climb {
   double nothing_below_ = std::numeric_limits<double>::infinity();  // its evidence, where not known
   std::vector<double> run_density_;       // log p(z | the loop before in its run)
   std::vector<Explanation<Pose>> peaks_;  // of earlier climbs
+  std::vector<Explanation<Pose>> doubted_;
   std::vector<Passed> passed_;
   std::vector<bool> dropped_;          // since the climb last rose; not tried again
   std::size_t learnt_from_ = 0;        // loops, at the last lesson

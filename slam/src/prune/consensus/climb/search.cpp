@@ -137,6 +137,8 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
     if (!calibrate || !astray()) break;
     unless_it_breaks_down(try_from, CovarianceScale{odometry, loops});
   }
+  const auto& doubted = climb.doubted();
+  found.insert(found.end(), doubted.begin(), doubted.end());
   if (const auto* none = nothing()) found.push_back(*none);
   keep_peaks(found);
   return found;
