@@ -61,6 +61,8 @@ MOVES = {
     "slips of odometry": (CLIMB, "::find_slips() {\n", "if ({off}) return false;"),
     "climbs that look for slips first":
         ("climb/search.cpp", "best_of(found).accepts_all()) return;\n", "if ({off}) return;"),
+    "coordinates leveled beside slips":
+        (CLIMB, "::level_odometry() {\n", "if ({off}) return false;"),
     "slips for rejected runs": (CLIMB, "::slip_for_rejected() {\n", "if ({off}) return false;"),
     "slips as if loops were accurate":
         (CLIMB, "::slip_as_if_accurate() {\n", "if ({off}) return false;"),

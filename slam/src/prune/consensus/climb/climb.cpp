@@ -151,7 +151,8 @@ template <class Pose>
 const Explanation<Pose>& Climb<Pose>::settle(const std::vector<bool>& accepted) {
   now_.accepted = accepted;
   assess();
-  while (learn_more_than(0.0) || weigh_anew() || find_slips()) {
+  const auto by_levelling = [this] { return level_odometry(); };
+  while (learn_more_than(0.0) || weigh_anew() || find_slips() || once(Trial::level, by_levelling)) {
   }
   return now_;
 }
@@ -508,6 +509,13 @@ bool Climb<Pose>::find_slips() {
   while (try_best_slips()) found = true;
   failed_[Trial::slips] = !found;
   return found;
+}
+
+// Coordinates that an edge slips in seem to err more than others, until that is known.
+template <class Pose>
+bool Climb<Pose>::level_odometry() {
+  if (now_.shapes.slips.empty() || !options_.calibrate) return false;
+  return try_with([](auto& now) { now.shapes.odometry.setOnes(); }, {.learning = true});
 }
 
 // Whether the moves gain more than this in all, or else nothing changes. As try_with().

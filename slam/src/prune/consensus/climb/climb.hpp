@@ -99,6 +99,7 @@ class Climb {
     lesson,
     lesson_of_scales,
     slips,
+    level,
     weights_by_others,
     afar,
     undecided,
@@ -152,6 +153,7 @@ class Climb {
   bool find_slips();
   bool gain_together(const std::function<bool()>& moves, double gain = kBetter);
   bool try_best_slips(double least = 0.0);
+  bool level_odometry();
   bool slip_as_if_accurate();
   bool slip_for_rejected();
   bool slip_for(const Selection& loops);
