@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <vector>
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
 #include "isotherm/base/random.hpp"
 #include "isotherm/slam/graph/pose_graph.hpp"
 #include "isotherm_test/random_graphs.hpp"
@@ -55,6 +58,14 @@ LoopGraph<Pose> random_loop_graph(isotherm::Random& random, int n, int loops, do
         made.truth[constraint.from].inverse() * made.truth[constraint.to] * Pose::exp(xi);
   }
   return made;
+}
+
+/// Adds so many of an edge's own deviations to what it measures, in each coordinate.
+template <class Pose>
+void slip(isotherm::slam::Constraint<Pose>& step, double deviations) {
+  const typename Pose::Matrix deviation =
+      Eigen::LLT<typename Pose::Matrix>(step.information.inverse()).matrixL();
+  step.T_from_to = step.T_from_to * Pose::exp(deviations * (deviation * Pose::Tangent::Ones()));
 }
 
 }  // namespace isotherm_test

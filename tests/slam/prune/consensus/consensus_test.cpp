@@ -298,14 +298,6 @@ TYPED_TEST(ConsensusOf, LearnsThatInformationIsOverconfident) {
   EXPECT_GE(count(result.verdicts, Verdict::keep), 148);
 }
 
-/// Adds so many of an edge's own deviations to what it measures, in each coordinate.
-template <class Pose>
-void slip(Constraint<Pose>& step, double deviations) {
-  const typename Pose::Matrix deviation =
-      Eigen::LLT<typename Pose::Matrix>(step.information.inverse()).matrixL();
-  step.T_from_to = step.T_from_to * Pose::exp(deviations * (deviation * Pose::Tangent::Ones()));
-}
-
 // Twenty deviations in a step of fifty: all others would have to err seven times as much.
 TYPED_TEST(ConsensusOf, FindsWhereOdometrySlips) {
   using Pose = TypeParam;
@@ -315,7 +307,7 @@ TYPED_TEST(ConsensusOf, FindsWhereOdometrySlips) {
   for (Index k = 20; k < 140; k += 50) {
     auto& step = graph.constraints[k];
     ASSERT_EQ(std::abs(step.to - step.from), 1);
-    slip(step, 20.0);
+    isotherm_test::slip(step, 20.0);
     slipped.push_back(graph.ids[std::min(step.from, step.to)]);
   }
   const auto result = consensus(graph, edge_roles(graph), {}, {.threads = 1});
@@ -347,7 +339,7 @@ PoseGraph<Pose> slipped_chain(int over_it) {
     const bool over = loop.from <= kSlipped && kSlipped < loop.to;
     if (!over || over_it-- > 0) graph.constraints.push_back(loop);
   }
-  slip(graph.constraints[kSlipped], 40.0);
+  isotherm_test::slip(graph.constraints[kSlipped], 40.0);
   return graph;
 }
 

@@ -117,9 +117,7 @@ TYPED_TEST(SlippingOf, FindsWhatLoopsThatPassForWorseHide) {
   auto graph = random_loop_graph<Pose>(random, 150, 80, 1.0).graph;
   auto& step = graph.constraints[kSlipped];
   ASSERT_EQ(std::abs(step.to - step.from), 1);
-  const typename Pose::Matrix deviation =
-      Eigen::LLT<typename Pose::Matrix>(step.information.inverse()).matrixL();
-  step.T_from_to = step.T_from_to * Pose::exp(20.0 * (deviation * Pose::Tangent::Ones()));
+  isotherm_test::slip(step, 20.0);
   const auto roles = edge_roles(graph);
   for (const Index k : roles.candidates) graph.constraints[k].information *= 0.01;
   const Objective<Pose> objective(graph, roles, kWindow);

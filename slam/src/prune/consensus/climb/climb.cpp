@@ -286,8 +286,9 @@ bool Climb<Pose>::shift() {
   if (!batch.loops.empty() && batch.gain > dropping) {
     accept(batch.loops);
   } else if (!out.empty()) {
-    const auto slip = [this] { return find_slips(); };
-    if (!learn_more_than(dropping) && !(slips_first_ && gain_together(slip, dropping))) drop(out);
+    const double least = now_.evidence + dropping;
+    const auto slip = [&] { return find_slips() && now_.evidence > least; };
+    if (!learn_more_than(dropping) && !(slips_first_ && all_or_nothing(slip))) drop(out);
   } else {
     return false;
   }
@@ -505,10 +506,17 @@ bool Climb<Pose>::try_best_slips(double least) {
 template <class Pose>
 bool Climb<Pose>::find_slips() {
   if (!options_.calibrate || failed_[Trial::slips]) return false;
-  bool found = false;
-  while (try_best_slips()) found = true;
+  const bool found = take_slips();
   failed_[Trial::slips] = !found;
   return found;
+}
+
+// Whether there was any that gains as much.
+template <class Pose>
+bool Climb<Pose>::take_slips(double least) {
+  bool any = false;
+  while (try_best_slips(least)) any = true;
+  return any;
 }
 
 // Coordinates that an edge slips in seem to err more than others, until that is known.
@@ -518,33 +526,18 @@ bool Climb<Pose>::level_odometry() {
   return try_with([](auto& now) { now.shapes.odometry.setOnes(); }, {.learning = true});
 }
 
-// Whether the moves gain more than this in all, or else nothing changes. As try_with().
-template <class Pose>
-bool Climb<Pose>::gain_together(const std::function<bool()>& moves, double gain) {
-  const Place before = place();
-  bool better = false;
-  try {
-    better = moves() && now_.evidence > before.now.evidence + gain;
-  } catch (const NumericalError&) {
-    better = false;
-  }
-  if (!better) go_back(before);
-  return better;
-}
-
 // Slips that are beyond doubt were all loops as accurate as most, and odometry in all coordinates.
 template <class Pose>
 bool Climb<Pose>::slip_as_if_accurate() {
-  return gain_together([this] {
+  const double least = now_.evidence + kBetter;
+  return all_or_nothing([&] {
     const ScaleShares shares = std::exchange(now_.shares, all_as_most(now_.shares));
     now_.weights.assign(now_.weights.size(), {});
     now_.shapes.odometry.setOnes();
     assess();
-    bool found = false;
-    while (try_best_slips(log_odds_of(1.0 - options_.significance))) found = true;
+    const bool found = take_slips(log_odds_of(1.0 - options_.significance));
     now_.shares = shares;
-    if (found) settle(now_.accepted);
-    return found;
+    return found && settle(now_.accepted).evidence > least;
   });
 }
 
@@ -571,18 +564,18 @@ bool Climb<Pose>::slip_for_rejected() {
 // how much worse that is says how likely they are.
 template <class Pose>
 bool Climb<Pose>::slip_for(const Selection& loops) {
-  return gain_together([&] {
-    const double before = now_.evidence;
+  const double before = now_.evidence;
+  return all_or_nothing([&] {
     std::fill(dropped_.begin(), dropped_.end(), false);
     for (const Index k : loops) now_.accepted[k] = true;
     assess();
-    if (!try_best_slips()) return false;
+    if (!try_best_slips(0.0)) return false;
     Explanation<Pose> best = now_;
-    while (now_.evidence <= before && (try_best_slips() || shift())) {
+    while (now_.evidence <= before && (try_best_slips(0.0) || shift())) {
       if (now_.accepted[loops.front()] && now_.evidence > best.evidence) best = now_;
     }
     if (now_.evidence <= before) doubted_.push_back(std::move(best));
-    return true;
+    return now_.evidence > before + kBetter;
   });
 }
 
@@ -598,26 +591,32 @@ bool Climb<Pose>::try_slips(std::span<const SlipChange> changes) {
   });
 }
 
-// Whether that gains as much, or else nothing changes. Scales at which the normal equations break
+// Whether the moves succeed, or else nothing changes. Scales at which the normal equations break
 // down explain nothing.
 template <class Pose>
-bool Climb<Pose>::try_with(const Change& change, const TrialTerms<Pose>& terms) {
+bool Climb<Pose>::all_or_nothing(const std::function<bool()>& moves) {
   const Place before = place();
-  change(now_);
-  if (terms.from) assessment_.stand_on(*terms.from);
-  if (terms.learning) assessment_.forget_nearness();
-  const double least = before.now.evidence + terms.gain;
   bool better = false;
   try {
-    better = terms.learning ? assess() && outdoes(least) : assess(least);
+    better = moves();
   } catch (const NumericalError&) {
     better = false;
   }
-  if (better) {
-    predict_runs();
-  } else {
-    go_back(before);
-  }
+  if (!better) go_back(before);
+  return better;
+}
+
+// Whether that gains as much, or else nothing changes.
+template <class Pose>
+bool Climb<Pose>::try_with(const Change& change, const TrialTerms<Pose>& terms) {
+  const double least = now_.evidence + terms.gain;
+  const bool better = all_or_nothing([&] {
+    change(now_);
+    if (terms.from) assessment_.stand_on(*terms.from);
+    if (terms.learning) assessment_.forget_nearness();
+    return terms.learning ? assess() && outdoes(least) : assess(least);
+  });
+  if (better) predict_runs();
   return better;
 }
 

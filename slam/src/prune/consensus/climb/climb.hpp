@@ -151,8 +151,8 @@ class Climb {
   bool try_all_as(const Selection& loops, bool accepted);
   bool learn_more_than(double gain);
   bool find_slips();
-  bool gain_together(const std::function<bool()>& moves, double gain = kBetter);
-  bool try_best_slips(double least = 0.0);
+  bool take_slips(double least = 0.0);
+  bool try_best_slips(double least);
   bool level_odometry();
   bool slip_as_if_accurate();
   bool slip_for_rejected();
@@ -165,6 +165,7 @@ class Climb {
   bool accept_undecided();
   bool drop_undecided();
   void draw_anew();
+  bool all_or_nothing(const std::function<bool()>& moves);
   bool try_with(const Change& change, const TrialTerms<Pose>& terms = {});
   Place place() const { return {now_, assessment_.findings(), run_density_, failed_}; }
   void go_back(const Place& place);

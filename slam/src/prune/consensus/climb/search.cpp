@@ -130,6 +130,7 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   // Of thousands of loops that are all explained a slip would change no verdict.
   if (calibrate && !astray() && (at_once || !all_explained())) {
     found.push_back(climb.slipping(best_of(found)));
+    found.insert(found.end(), climb.doubted().begin(), climb.doubted().end());
   }
   climb_over_slips(climb, before, found);
   if (calibrate && depth.to_the_last && at_once && !astray()) settle_anew(climb, found);
@@ -137,8 +138,6 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
     if (!calibrate || !astray()) break;
     unless_it_breaks_down(try_from, CovarianceScale{odometry, loops});
   }
-  const auto& doubted = climb.doubted();
-  found.insert(found.end(), doubted.begin(), doubted.end());
   if (const auto* none = nothing()) found.push_back(*none);
   keep_peaks(found);
   return found;
