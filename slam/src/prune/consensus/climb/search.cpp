@@ -127,13 +127,14 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
                        found, [&](const auto& peak) { return peak.evidence <= none->evidence; });
   };
   if (astray()) climb_from_each_start(calibrate, try_from);
-  // Of thousands of loops that are all explained a slip would change no verdict.
-  if (calibrate && !astray() && (at_once || !all_explained())) {
+  // Of thousands of loops that are all explained a slip would change no verdict, nor of a sample.
+  const bool to_the_last = depth.to_the_last && at_once;
+  if (calibrate && !astray() && (to_the_last || !all_explained())) {
     found.push_back(climb.slipping(best_of(found)));
     found.insert(found.end(), climb.doubted().begin(), climb.doubted().end());
   }
   climb_over_slips(climb, before, found);
-  if (calibrate && depth.to_the_last && at_once && !astray()) settle_anew(climb, found);
+  if (calibrate && to_the_last && !astray()) settle_anew(climb, found);
   for (const auto& [odometry, loops] : std::span(kStarts).subspan(kStartsAlways)) {
     if (!calibrate || !astray()) break;
     unless_it_breaks_down(try_from, CovarianceScale{odometry, loops});
