@@ -106,6 +106,13 @@ TYPED_TEST(CarryOf, OfSomeLoopsLeadsToThePeakOfAll) {
 }
 
 template <class Pose>
+bool ends_a_loop(const PoseGraph<Pose>& graph, Index vertex) {
+  return std::ranges::any_of(graph.constraints, [vertex](const auto& link) {
+    return std::abs(link.to - link.from) != 1 && (link.from == vertex || link.to == vertex);
+  });
+}
+
+template <class Pose>
 class SlippingOf : public testing::Test {};
 TYPED_TEST_SUITE(SlippingOf, Poses);
 
@@ -136,6 +143,39 @@ TYPED_TEST(SlippingOf, FindsWhatLoopsThatPassForWorseHide) {
   const auto found = other.slipping(hidden);
   EXPECT_EQ(found.shapes.slips, told.shapes.slips);
   EXPECT_NEAR(found.evidence, told.evidence, kBetter);
+}
+
+// A false loop that alone tells where a pose is looks true where odometry slips before and after
+// it, and does better to be dropped with the slips. The two next to it say otherwise.
+TYPED_TEST(SlippingOf, DropsALoopThatAloneTellsASlip) {
+  using Pose = TypeParam;
+  constexpr Index kNear = 1;
+  Random random(Pose::kDim == 2 ? 16 : 15);
+  auto [graph, truth] = random_loop_graph<Pose>(random, 150, 80, 1.0);
+  const auto count = static_cast<Index>(edge_roles(graph).candidates.size());
+  Index alone = 60;
+  while (ends_a_loop(graph, alone)) ++alone;
+  for (const Index next : {0, 1, 2}) {
+    auto loop = graph.constraints.back();
+    loop.from = alone + next;
+    loop.to = alone + 40 + next;
+    loop.T_from_to = truth[loop.from].between(truth[loop.to]);
+    isotherm_test::slip(loop, 40.0 * (1 + next));
+    graph.constraints.push_back(loop);
+  }
+  const Objective<Pose> objective(graph, edge_roles(graph), kNear);
+  std::vector<bool> accepted(count + 3, false);
+  std::fill_n(accepted.begin(), count, true);
+  Climb<Pose> of_true(objective, kOptions, kSilent);
+  const auto truly = of_true.settled_on(accepted, {});
+  accepted[count] = true;
+  Climb<Pose> climb(objective, kOptions, kSilent);
+  const auto misled = climb.settled_on(accepted, {});
+  ASSERT_GT(misled.standings[count].log_odds, 0.0);
+  ASSERT_GT(truly.evidence, misled.evidence + kBetter);
+  const auto found = climb.slipping(misled);
+  EXPECT_EQ(found.accepted, truly.accepted);
+  EXPECT_GT(found.evidence, truly.evidence - kBetter);
 }
 
 TYPED_TEST(SlippingOf, GoesBackWhereNothingSlips) {

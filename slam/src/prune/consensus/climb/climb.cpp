@@ -122,8 +122,9 @@ Explanation<Pose> Climb<Pose>::slipping(const Explanation<Pose>& found) {
   if (!hidden && !rejected) return found;
   stand_on({found, assessment_.findings()});
   const bool unhidden = hidden && slip_as_if_accurate();
-  const bool believed = rejected && slip_for_rejected();
-  return unhidden || believed ? climb() : found;
+  const bool believed = rejected && slip_for_any(rejected_runs(), true);
+  const bool disbelieved = rejected && slip_for_any(strays(), false);
+  return unhidden || believed || disbelieved ? climb() : found;
 }
 
 // Grows to them first, the most certain before the rest, so that poses come near.
@@ -286,9 +287,7 @@ bool Climb<Pose>::shift() {
   if (!batch.loops.empty() && batch.gain > dropping) {
     accept(batch.loops);
   } else if (!out.empty()) {
-    const double least = now_.evidence + dropping;
-    const auto slip = [&] { return find_slips() && now_.evidence > least; };
-    if (!learn_more_than(dropping) && !(slips_first_ && all_or_nothing(slip))) drop(out);
+    if (!learn_more_than(dropping)) drop(out);
   } else {
     return false;
   }
@@ -541,18 +540,16 @@ bool Climb<Pose>::slip_as_if_accurate() {
   });
 }
 
-// Runs of rejected loops that together explain more with an edge that slips, until eight in a row
-// do not: the likeliest first.
+// Whether it gains of any of these that they are all `accepted`, or none, until eight in a row do
+// not.
 template <class Pose>
-bool Climb<Pose>::slip_for_rejected() {
-  auto runs = groups(open());
-  std::ranges::stable_sort(runs, std::greater{}, &Group::gain);
+bool Climb<Pose>::slip_for_any(const std::vector<Selection>& all, bool accepted) {
   bool any = false;
   int vain = 0;
-  for (const Group& run : runs) {
-    const Index first = run.loops.front();
-    if (now_.accepted[first] || !now_.standings[first].connected()) continue;
-    const bool gains = slip_for(run.loops);
+  for (const Selection& loops : all) {
+    const Index first = loops.front();
+    if (now_.accepted[first] == accepted || !now_.standings[first].connected()) continue;
+    const bool gains = slip_for(loops, accepted);
     any = any || gains;
     vain = gains ? 0 : vain + 1;
     if (vain == kMostVain) break;
@@ -560,23 +557,60 @@ bool Climb<Pose>::slip_for_rejected() {
   return any;
 }
 
-// Whether it gains that these are true and odometry slips. Else it is what explains them best, and
-// how much worse that is says how likely they are.
+// Whether it gains that these are true, or false, and odometry slips otherwise. Else it is what
+// explains that best, and how much worse that is says how likely it is.
 template <class Pose>
-bool Climb<Pose>::slip_for(const Selection& loops) {
-  const double before = now_.evidence;
+bool Climb<Pose>::slip_for(const Selection& loops, bool accepted) {
+  const double least = now_.evidence + kBetter;
   return all_or_nothing([&] {
     std::fill(dropped_.begin(), dropped_.end(), false);
-    for (const Index k : loops) now_.accepted[k] = true;
-    assess();
-    if (!try_best_slips(0.0)) return false;
-    Explanation<Pose> best = now_;
-    while (now_.evidence <= before && (try_best_slips(0.0) || shift())) {
-      if (now_.accepted[loops.front()] && now_.evidence > best.evidence) best = now_;
+    for (const Index k : loops) {
+      now_.accepted[k] = accepted;
+      dropped_[k] = !accepted;
     }
-    if (now_.evidence <= before) doubted_.push_back(std::move(best));
-    return now_.evidence > before + kBetter;
+    assess();
+    if (accepted && !try_best_slips(0.0)) return false;
+    Explanation<Pose> best = now_;
+    while (now_.evidence <= least && (try_best_slips(0.0) || shift())) {
+      const bool still = now_.accepted[loops.front()] == accepted;
+      if (still && now_.evidence > best.evidence) best = now_;
+    }
+    if (now_.evidence > least) return true;
+    doubted_.push_back(std::move(best));
+    return false;
   });
+}
+
+// The likeliest first: they may be refuted each alone, and tell a slip together.
+template <class Pose>
+std::vector<typename Climb<Pose>::Selection> Climb<Pose>::rejected_runs() const {
+  auto runs = groups(open());
+  std::ranges::stable_sort(runs, std::greater{}, &Group::gain);
+  std::vector<Selection> loops;
+  for (Group& run : runs) loops.push_back(std::move(run.loops));
+  return loops;
+}
+
+// Accepted loops next to which in their run all are rejected. One that tells a slip alone may be
+// false: with it the map agrees with that loop, and with no other of the run.
+template <class Pose>
+std::vector<typename Climb<Pose>::Selection> Climb<Pose>::strays() const {
+  std::vector<int> agree(now_.accepted.size(), 0);
+  std::vector<int> differ = agree;
+  for (std::size_t k = 0; k < agree.size(); ++k) {
+    const Index before = objective_.runs().before(static_cast<Index>(k));
+    if (before == Runs<Pose>::kNone) continue;
+    auto& count = now_.accepted[k] == now_.accepted[before] ? agree : differ;
+    ++count[k];
+    ++count[before];
+  }
+  std::vector<Selection> strays;
+  for (std::size_t k = 0; k < agree.size(); ++k) {
+    if (now_.accepted[k] && differ[k] > 0 && agree[k] == 0) {
+      strays.push_back({static_cast<Index>(k)});
+    }
+  }
+  return strays;
 }
 
 template <class Pose>

@@ -58,10 +58,6 @@ class Climb {
   /// takes less time.
   void look_afar(bool looks) { looks_afar_ = looks; }
 
-  /// Climbs look for edges of odometry that slip before they drop a loop, not when nothing else is
-  /// left: true loops stay that only a slip explains, but so do false ones that a slip explains.
-  void slips_first() { slips_first_ = true; }
-
   /// See Assessment.
   void hold_nearness(bool held) { assessment_.hold_nearness(held); }
 
@@ -71,13 +67,13 @@ class Climb {
   /// Of the explanation that the last call ended at.
   const Assessment<Pose>& assessment() const noexcept { return assessment_; }
 
-  /// On from there with edges of odometry that slip as its loops say if they are accurate, where
-  /// that explains them better: around an edge that slips they look less accurate than others, and
-  /// where they are taken for that nothing speaks for a slip.
+  /// On from there with edges of odometry that slip otherwise, where that explains loops better
+  /// that hide it: around an edge that slips they look less accurate than others, or are rejected;
+  /// or one is accepted that alone tells a slip.
   Explanation<Pose> slipping(const Explanation<Pose>& found);
 
-  /// What explains best that runs of loops are true which odometry would have to slip for, but
-  /// worse than that they are false: of the last call of slipping().
+  /// What explains best that loops are true, or false, which odometry would have to slip otherwise
+  /// for, but worse than what was found: of the last call of slipping().
   const std::vector<Explanation<Pose>>& doubted() const noexcept { return doubted_; }
 
   /// What explains best that exactly these loops are true, from `start`.
@@ -155,8 +151,10 @@ class Climb {
   bool try_best_slips(double least);
   bool level_odometry();
   bool slip_as_if_accurate();
-  bool slip_for_rejected();
-  bool slip_for(const Selection& loops);
+  bool slip_for_any(const std::vector<Selection>& all, bool accepted);
+  bool slip_for(const Selection& loops, bool accepted);
+  std::vector<Selection> rejected_runs() const;
+  std::vector<Selection> strays() const;
   bool try_slips(std::span<const SlipChange> changes);
   bool once(Trial trial, const std::function<bool()>& move);
   bool weigh_anew();
@@ -191,7 +189,6 @@ class Climb {
   std::size_t drawn_from_ = 0;         // loops, when the map was last drawn anew
   std::array<bool, trials> failed_{};  // trials here; not repeated until a change
   bool looks_afar_ = true;
-  bool slips_first_ = false;
   std::vector<ConsensusMove> moves_;
   bool settled_ = true;
 };

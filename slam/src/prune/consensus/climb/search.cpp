@@ -75,20 +75,6 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole,
   return standpoints;
 }
 
-// Where odometry slips and some loops are false, also by climbs that look for slips first, which no
-// earlier peak leads astray.
-template <class Pose>
-void climb_over_slips(Climb<Pose>& climb, const std::vector<Standpoint<Pose>>& standpoints,
-                      std::vector<Explanation<Pose>>& found) {
-  if (found.empty() || best_of(found).shapes.slips.empty() || best_of(found).accepts_all()) return;
-  Climb<Pose> afresh = climb.on(climb.objective());
-  afresh.look_afar(standpoints.empty());
-  afresh.slips_first();
-  const auto grow = [&](const auto& start) { found.push_back(afresh.from(start)); };
-  for (const auto& standpoint : standpoints) unless_it_breaks_down(grow, standpoint);
-  if (standpoints.empty()) climb_from_each_start(true, grow);
-}
-
 // The loops that were found, better explained: by a climb from the sharpest scales that all begin
 // at, which no other loops or peaks lead astray, and from scales on either side.
 template <class Pose>
@@ -133,7 +119,6 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
     found.push_back(climb.slipping(best_of(found)));
     found.insert(found.end(), climb.doubted().begin(), climb.doubted().end());
   }
-  climb_over_slips(climb, before, found);
   if (calibrate && to_the_last && !astray()) settle_anew(climb, found);
   for (const auto& [odometry, loops] : std::span(kStarts).subspan(kStartsAlways)) {
     if (!calibrate || !astray()) break;
