@@ -48,6 +48,7 @@ CONSTANTS = [
 ]
 # Of each move the place in a source behind which it is left out, and how.
 CLIMB = "climb/climb.cpp"
+TRIALS = "::slip_for_any(const std::vector<Selection>& all, bool accepted) {\n"
 MOVES = {
     "lessons of the common scales alone":
         (CLIMB, "    if (failed_[trial]) continue;\n",
@@ -59,11 +60,11 @@ MOVES = {
     "loops weighed by the others": (CLIMB, "::weigh_by_others() {\n", "if ({off}) return false;"),
     "the look afar": (CLIMB, "::weigh_afar() {\n", "if ({off}) return false;"),
     "slips of odometry": (CLIMB, "::find_slips() {\n", "if ({off}) return false;"),
-    "climbs that look for slips first":
-        ("climb/search.cpp", "best_of(found).accepts_all()) return;\n", "if ({off}) return;"),
     "coordinates leveled beside slips":
         (CLIMB, "::level_odometry() {\n", "if ({off}) return false;"),
-    "slips for rejected runs": (CLIMB, "::slip_for_rejected() {\n", "if ({off}) return false;"),
+    "slips for rejected runs": (CLIMB, TRIALS, "if (accepted && {off}) return false;"),
+    "slips without a loop that tells one alone":
+        (CLIMB, TRIALS, "if (!accepted && {off}) return false;"),
     "slips as if loops were accurate":
         (CLIMB, "::slip_as_if_accurate() {\n", "if ({off}) return false;"),
     "all accepted that are not false beyond doubt":

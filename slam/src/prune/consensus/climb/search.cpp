@@ -114,12 +114,12 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   };
   if (astray()) climb_from_each_start(calibrate, try_from);
   // Of thousands of loops that are all explained a slip would change no verdict, nor of a sample.
-  const bool to_the_last = depth.to_the_last && at_once;
-  if (calibrate && !astray() && (to_the_last || !all_explained())) {
+  const bool to_the_last = (depth.to_the_last && at_once) || !all_explained();
+  if (calibrate && to_the_last && !astray()) {
     found.push_back(climb.slipping(best_of(found)));
     found.insert(found.end(), climb.doubted().begin(), climb.doubted().end());
+    if (at_once) settle_anew(climb, found);
   }
-  if (calibrate && to_the_last && !astray()) settle_anew(climb, found);
   for (const auto& [odometry, loops] : std::span(kStarts).subspan(kStartsAlways)) {
     if (!calibrate || !astray()) break;
     unless_it_breaks_down(try_from, CovarianceScale{odometry, loops});
