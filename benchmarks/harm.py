@@ -99,26 +99,30 @@ def page(rows, unfinished, quick):
     return "\n".join(lines) + "\n"
 
 
-def rows_of_others(path, methods):
-    """What was measured before of methods that are not measured now."""
+def rows_of_others(path, methods, graphs):
+    """What was measured before of methods and graphs that are not measured now."""
     if not path.exists():
         return []
     with open(path, encoding="utf-8", newline="") as file:
         return [row | {key: int(row[key]) for key in ("seed", "loops", "pruned", "ambiguous")}
-                for row in csv.DictReader(file) if row["method"] not in methods]
+                for row in csv.DictReader(file)
+                if row["method"] not in methods or row["graph"] not in graphs]
 
 
 def main():
     parser = argument_parser(__doc__)
     parser.add_argument("--isotherm", default=ROOT / "build" / "release" / "apps" / "isotherm")
     parser.add_argument("--quick", action="store_true", help="small graphs, one seed")
+    parser.add_argument("--graphs", nargs="+", default=SMALL + LARGE, choices=SMALL + LARGE,
+                        help="measure these alone; of the others what is there stays")
     parser.add_argument("--methods", nargs="+", default=METHODS, choices=METHODS)
     parser.add_argument("--time-limit", type=int, default=600, help="seconds a run")
     options = parser.parse_args()
     command = Command(options.isotherm, options.time_limit)
     results = Results(ROOT / "build" / "harm")
     tasks = {}
-    for graph in SMALL + ([] if options.quick else LARGE):
+    graphs = [graph for graph in options.graphs if graph in SMALL or not options.quick]
+    for graph in graphs:
         for variant in variants.VARIANTS:
             drawn = variant in variants.RANDOM and not options.quick
             for seed in range(1, 4 if drawn else 2):
@@ -130,7 +134,7 @@ def main():
     found = [row for row in map(results.get, tasks) if row]
     target = ROOT / "docs" / "results"
     measured = [row for row in found if "graph" in row]
-    rows = measured + rows_of_others(target / "data" / "harm.csv", options.methods)
+    rows = measured + rows_of_others(target / "data" / "harm.csv", options.methods, graphs)
     (target / "data").mkdir(parents=True, exist_ok=True)
     with open(target / "data" / "harm.csv", "w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, ["graph", "variant", "seed", "method", "loops", "pruned",
