@@ -116,7 +116,8 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   // Of thousands of loops that are all explained a slip would change no verdict, nor of a sample.
   const bool to_the_last = (depth.to_the_last && at_once) || !all_explained();
   if (calibrate && to_the_last && !astray()) {
-    found.push_back(climb.slipping(best_of(found)));
+    const auto slip = [&](const auto& best) { found.push_back(climb.slipping(best)); };
+    unless_it_breaks_down(slip, best_of(found));
     found.insert(found.end(), climb.doubted().begin(), climb.doubted().end());
     if (at_once) settle_anew(climb, found);
   }
