@@ -155,6 +155,7 @@ def dominance(rows):
         return [row for row in compared if row["evidence"][name] > own(row) + NATS]
 
     told = sum(len(better(name, lambda row: row["evidence"]["consensus"])) for name in names)
+    cells = {name: better(name, ours) for name in names}
     lines = ["", "## Evidence", "",
              f"Of {len(compared)} cells, how often the log evidence of an answer is higher than that",
              f"of consensus by more than {NATS:g}. Of every answer it is what `isotherm eval evidence`",
@@ -162,10 +163,10 @@ def dominance(rows):
              f"What `prune` tells alone is less than another answer's in {told} of "
              f"{len(names) * len(compared)}: of", "many loops it stops sooner.",
              "", "| answer | cells |", "|---|---|"]
-    lines += [f"| {name} | {len(better(name, ours))} |" for name in names]
+    lines += [f"| {name} | {len(of_name)} |" for name, of_name in cells.items()]
     lines += [""] + [f"- {name}: {row['graph']}, {row['variant']}, {row['type']}, by "
                      f"{row['evidence'][name] - ours(row):.1f}"
-                     for name in names for row in better(name, ours)]
+                     for name, of_name in cells.items() for row in of_name]
     return lines
 
 

@@ -414,11 +414,16 @@ double Climb<Pose>::gain_of_dropping(const Selection& loops) const {
 }
 
 template <class Pose>
-void Climb<Pose>::drop(const Selection& loops) {
+void Climb<Pose>::take_as(const Selection& loops, bool accepted) {
   for (const Index k : loops) {
-    now_.accepted[k] = false;
-    dropped_[k] = true;
+    now_.accepted[k] = accepted;
+    dropped_[k] = !accepted;
   }
+}
+
+template <class Pose>
+void Climb<Pose>::drop(const Selection& loops) {
+  take_as(loops, false);
   assess();
   note(0, loops.size());
 }
@@ -452,7 +457,7 @@ Group Climb<Pose>::next_batch() const {
 
 template <class Pose>
 void Climb<Pose>::accept(const Selection& loops) {
-  for (const Index k : loops) now_.accepted[k] = true;
+  take_as(loops, true);
   assess();
   note(loops.size(), 0);
 }
@@ -505,7 +510,7 @@ bool Climb<Pose>::try_best_slips(double least) {
 template <class Pose>
 bool Climb<Pose>::find_slips() {
   if (!options_.calibrate || failed_[Trial::slips]) return false;
-  const bool found = take_slips();
+  const bool found = take_slips(0.0);
   failed_[Trial::slips] = !found;
   return found;
 }
@@ -564,10 +569,7 @@ bool Climb<Pose>::slip_for(const Selection& loops, bool accepted) {
   const double least = now_.evidence + kBetter;
   return all_or_nothing([&] {
     std::fill(dropped_.begin(), dropped_.end(), false);
-    for (const Index k : loops) {
-      now_.accepted[k] = accepted;
-      dropped_[k] = !accepted;
-    }
+    take_as(loops, accepted);
     assess();
     if (accepted && !try_best_slips(0.0)) return false;
     Explanation<Pose> best = now_;

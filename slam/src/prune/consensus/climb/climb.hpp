@@ -138,6 +138,7 @@ class Climb {
   bool assess(double least = -std::numeric_limits<double>::infinity());
   Selection misfits() const;
   double gain_of_dropping(const Selection& loops) const;
+  void take_as(const Selection& loops, bool accepted);
   void drop(const Selection& loops);
   std::vector<bool> open() const;
   std::vector<Group> groups(const std::vector<bool>& among) const;
@@ -147,7 +148,7 @@ class Climb {
   bool try_all_as(const Selection& loops, bool accepted);
   bool learn_more_than(double gain);
   bool find_slips();
-  bool take_slips(double least = 0.0);
+  bool take_slips(double least);
   bool try_best_slips(double least);
   bool level_odometry();
   bool slip_as_if_accurate();

@@ -103,8 +103,9 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   const std::vector<Index> sampled = sample_of(climb, depth.sample_soon);
   const bool at_once = sampled.empty();
   climb.look_afar(at_once);
-  const auto before = standpoints(climb, sampled, depth.sample_soon);
-  for (const auto& standpoint : before) unless_it_breaks_down(try_from, standpoint);
+  for (const auto& standpoint : standpoints(climb, sampled, depth.sample_soon)) {
+    unless_it_breaks_down(try_from, standpoint);
+  }
   const auto nothing = [&] { return climb.nothing(least_that_tells(found)); };
   const auto astray = [&] {
     if (found.empty()) return true;
