@@ -503,7 +503,7 @@ bool Climb<Pose>::try_best_slips(double least) {
   std::size_t count = 0;
   while (count < changes.size() && changes[count].gain >= 0.5 * changes.front().gain) ++count;
   const std::span all(changes);
-  return count > 0 && (try_slips(all.first(count)) || try_slips(all.first(1)));
+  return count > 0 && (try_slips(all.first(count)) || (count > 1 && try_slips(all.first(1))));
 }
 
 // Until none gains, before loops are accepted that a slip too many leaves room for.

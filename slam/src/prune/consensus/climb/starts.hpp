@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -31,18 +32,19 @@ void climb_from_each_start(bool calibrate, Function&& climb_from) {
 }
 
 /// The best of these loops from the poses found with them, and from loops a deviation of their
-/// prior more and less accurate than found, as long as it rises: scales may have more than one
-/// peak, between which lessons do not lead, and a loop that has drawn the map to itself looks
-/// accurate there.
+/// prior more and less accurate than found, as long as that leads to other scales: they may have
+/// more than one peak, between which lessons do not lead, and a loop that has drawn the map to
+/// itself looks accurate there.
 template <class Pose>
 Explanation<Pose> settled_on_either_side(Climb<Pose>& climb, Explanation<Pose> found) {
-  for (bool rises = true; std::exchange(rises, false);) {
+  std::optional<CovarianceScale> before;
+  while (!before || !about_the_same(found.scale, *before)) {
+    before = found.scale;
     for (const double change : {-kScaleDeviation, kScaleDeviation}) {
       const double log_scale = std::log(found.scale.loops) + change;
       const double loops = std::exp(std::clamp(log_scale, -kMostScale, kMostScale));
       const auto settle = [&](const CovarianceScale& start) {
         auto other = climb.settled_near(found, start);
-        rises = rises || other.evidence > found.evidence + kBetter;
         if (other.evidence > found.evidence) found = std::move(other);
       };
       unless_it_breaks_down(settle, CovarianceScale{found.scale.odometry, loops});
