@@ -8,7 +8,6 @@ looked at with, clean and with half of the loops false. Writes docs/results/abla
 docs/results/data/ablation.csv. Runs are kept in build/ablation, so that an interrupted run goes on where it stopped.
 """
 
-import csv
 import functools
 import json
 import pathlib
@@ -21,7 +20,7 @@ from harm import FEW, SMALL, path_of
 from support import variants
 from support.experiment import ROOT, argument_parser
 from support.instrumented import PREFIX, Changed, Constant, build, read_from_environment, replace
-from support.runs import Command, Results, read_csv, run_all
+from support.runs import Command, Results, read_csv, run_all, write_csv
 
 SEED = 7  # of variants and of false loops
 EVERY = 12  # cells of all, so that it takes an hour
@@ -218,11 +217,9 @@ def main():
     rows = {name: results.get(name) for name in runs}
     rows = {name: row for name, row in rows.items() if row and "cells" in row}
     target = ROOT / "docs" / "results"
-    with open(target / "data" / "ablation.csv", "w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        columns = [key for key in rows["base"] if key != "evidence"]
-        writer.writerow(["run", *columns])
-        writer.writerows([name, *(row[key] for key in columns)] for name, row in rows.items())
+    columns = ["run", *(key for key in rows["base"] if key != "evidence")]
+    write_csv(target / "data" / "ablation.csv", columns,
+              [{key: ({"run": name} | row)[key] for key in columns} for name, row in rows.items()])
     (target / "ablation.md").write_text(page(rows["base"], rows, len(files)), encoding="utf-8")
     print(f"ablation: wrote {target / 'ablation.md'}", file=sys.stderr)
 

@@ -8,7 +8,6 @@ of other methods' and of the labels. Every cell is kept in build/corrupted, so t
 run goes on where it stopped.
 """
 
-import csv
 import functools
 import math
 import pathlib
@@ -19,7 +18,7 @@ import tempfile
 from harm import FEW, SMALL, path_of
 from support import variants
 from support.experiment import ROOT, argument_parser
-from support.runs import Command, Results, read_csv, run_all
+from support.runs import Command, Results, read_csv, run_all, write_csv
 
 TYPES = ["random-grouped", "local-grouped"]
 RIVALS = ["gnc", "rrr", "chi2"]
@@ -186,10 +185,7 @@ def main():
         run_all(tasks, results, options.jobs)
     rows = [row for row in map(results.get, tasks) if row and "bins" in row]
     target = ROOT / "docs" / "results"
-    with open(target / "data" / "corrupted.csv", "w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_csv(target / "data" / "corrupted.csv", COLUMNS, rows)
     (target / "corrupted.md").write_text(page(rows), encoding="utf-8")
     print(f"corrupted: wrote {target / 'corrupted.md'}", file=sys.stderr)
 

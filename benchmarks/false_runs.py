@@ -8,7 +8,6 @@ docs/results/data/false_runs.csv. Every cell is kept in build/false_runs, so tha
 goes on where it stopped.
 """
 
-import csv
 import functools
 import math
 import pathlib
@@ -18,7 +17,7 @@ import tempfile
 
 from support import variants
 from support.experiment import ROOT, argument_parser
-from support.runs import Command, Results, read_csv, run_all
+from support.runs import Command, Results, read_csv, run_all, write_csv
 
 METHODS = ["consensus", "gnc", "rrr", "pcm"]
 LOOPS = [30, 100, 300]
@@ -51,13 +50,10 @@ def write_cell(command, work, poses, loops, seed):
     while len(graph.edges) < poses - 1 + 2 * len(true):
         graph.edges += false_run(draw, poses, true[0])
     variants.write(graph, work / "v.g2o")
-    with open(work / "labels.csv", "w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["edge", "from", "to", "label"])
-        for number, edge in enumerate(graph.edges):
-            label = "correct" if number < poses - 1 + len(true) else "incorrect"
-            if not edge.is_odometry:
-                writer.writerow([number, *edge.ends, label])
+    write_csv(work / "labels.csv", ["edge", "from", "to", "label"], [
+        {"edge": number, "from": edge.ends[0], "to": edge.ends[1],
+         "label": "correct" if number < poses - 1 + len(true) else "incorrect"}
+        for number, edge in enumerate(graph.edges) if not edge.is_odometry])
     return len(true)
 
 
@@ -110,10 +106,7 @@ def main():
         run_all(tasks, results, options.jobs)
     rows = [row for row in map(results.get, tasks) if row and "poses" in row]
     target = ROOT / "docs" / "results"
-    with open(target / "data" / "false_runs.csv", "w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_csv(target / "data" / "false_runs.csv", list(rows[0]), rows)
     (target / "false-runs.md").write_text(page(rows), encoding="utf-8")
     print(f"false_runs: wrote {target / 'false-runs.md'}", file=sys.stderr)
 

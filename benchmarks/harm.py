@@ -7,7 +7,6 @@ build/harm, so that an interrupted run goes on where it stopped. What consensus 
 by evidence only an older version can measure: its rows are taken from the present harm.csv.
 """
 
-import csv
 import functools
 import pathlib
 import random
@@ -16,7 +15,7 @@ import tempfile
 
 from support import variants
 from support.experiment import ROOT, argument_parser
-from support.runs import Command, Results, run_all
+from support.runs import Command, Results, read_csv, run_all, write_csv
 
 METHODS = ["consensus", "gnc", "rrr"]
 EARLIER = "earlier consensus"
@@ -103,10 +102,9 @@ def rows_of_others(path, methods, graphs):
     """What was measured before of methods and graphs that are not measured now."""
     if not path.exists():
         return []
-    with open(path, encoding="utf-8", newline="") as file:
-        return [row | {key: int(row[key]) for key in ("seed", "loops", "pruned", "ambiguous")}
-                for row in csv.DictReader(file)
-                if row["method"] not in methods or row["graph"] not in graphs]
+    return [row | {key: int(row[key]) for key in ("seed", "loops", "pruned", "ambiguous")}
+            for row in read_csv(path)
+            if row["method"] not in methods or row["graph"] not in graphs]
 
 
 def main():
@@ -136,11 +134,8 @@ def main():
     measured = [row for row in found if "graph" in row]
     rows = measured + rows_of_others(target / "data" / "harm.csv", options.methods, graphs)
     (target / "data").mkdir(parents=True, exist_ok=True)
-    with open(target / "data" / "harm.csv", "w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, ["graph", "variant", "seed", "method", "loops", "pruned",
-                                       "ambiguous"], lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_csv(target / "data" / "harm.csv",
+              ["graph", "variant", "seed", "method", "loops", "pruned", "ambiguous"], rows)
     (target / "harm.md").write_text(page(rows, len(found) - len(measured), options.quick),
                                     encoding="utf-8")
     print(f"harm: wrote {target / 'harm.md'}", file=sys.stderr)

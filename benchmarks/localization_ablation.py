@@ -8,7 +8,6 @@ docs/results/data/localization_ablation.csv. Runs are kept in build/localization
 an interrupted run goes on where it stopped.
 """
 
-import csv
 import functools
 import math
 import pathlib
@@ -18,7 +17,7 @@ import tempfile
 
 from support.experiment import ROOT, argument_parser
 from support.instrumented import Changed, Constant, build, read_from_environment, replace
-from support.runs import Command, Results, read_csv, run_all
+from support.runs import Command, Results, read_csv, run_all, write_csv
 
 ROOM = pathlib.Path("network/src/localize")
 DEGREE = 12
@@ -174,11 +173,8 @@ def main():
     found = {name: row["networks"] for name in runs if (row := results.get(name)) and "networks" in row}
     rows = {name: summary(row, found["base"]) for name, row in found.items()}
     target = ROOT / "docs" / "results"
-    with open(target / "data" / "localization_ablation.csv", "w", encoding="utf-8",
-              newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["run", *rows["base"]])
-        writer.writerows([name, *row.values()] for name, row in rows.items())
+    write_csv(target / "data" / "localization_ablation.csv", ["run", *rows["base"]],
+              [{"run": name} | row for name, row in rows.items()])
     (target / "localization-ablation.md").write_text(page(rows), encoding="utf-8")
     print(f"ablation: wrote {target / 'localization-ablation.md'}", file=sys.stderr)
 

@@ -8,7 +8,6 @@ docs/results/online.md, its figure, and docs/results/data/online.csv. Every cell
 build/online, so that an interrupted run goes on where it stopped.
 """
 
-import csv
 import functools
 import json
 import pathlib
@@ -18,7 +17,7 @@ import textwrap
 
 from support import online_memory, online_peers, online_prefixes, online_stops, online_times
 from support.experiment import ROOT, argument_parser
-from support.runs import Command, Results, read_csv, run_all
+from support.runs import Command, Results, read_csv, run_all, write_csv
 from support.streams import CITY, prepare
 
 GRAPHS = ["intel", "CSAIL", "kitti_00", "ringCity", "B25b_0.600", "Bovisa04", "parking-garage", CITY,
@@ -98,13 +97,6 @@ def cells_section(rows, planned):
     return lines + [""]
 
 
-def write_cells(rows, path):
-    with open(path, "w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-
-
 def cell_tasks(command, data, graphs):
     # What differs most comes first, for runs that are cut short.
     kinds = [("clean", 0.0)] + [(kind, share) for share in FRACTIONS for kind in TYPES]
@@ -133,7 +125,7 @@ def main():
     found = {name: list(rows.values()) for name, rows in measured.items()}
     found["cells"].sort(key=lambda row: GRAPHS.index(row["graph"]))
     folder = ROOT / "docs" / "results"
-    write_cells(found["cells"], folder / "data" / "online.csv")
+    write_csv(folder / "data" / "online.csv", COLUMNS, found["cells"])
     lines = ["# Verdicts while a graph comes in", "", *cells_section(found["cells"], len(cells)),
              *online_prefixes.section(found["prefixes"]), *online_peers.section(measured["peers"]),
              *online_times.section(found["times"], folder),

@@ -87,6 +87,14 @@ def outcome(future):
         return {"failed": str(error)}
 
 
+def write_csv(path, columns, rows):
+    """Rows, dictionaries, as a CSV file."""
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, columns, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
 def read_csv(path):
     """The rows of a CSV file as dictionaries."""
     with open(path, encoding="utf-8", newline="") as file:

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <span>
 #include <utility>
 
@@ -37,8 +36,8 @@ void climb_from_each_start(bool calibrate, Function&& climb_from) {
 /// itself looks accurate there.
 template <class Pose>
 Explanation<Pose> settled_on_either_side(Climb<Pose>& climb, Explanation<Pose> found) {
-  std::optional<CovarianceScale> before;
-  while (!before || !about_the_same(found.scale, *before)) {
+  CovarianceScale before;
+  do {
     before = found.scale;
     for (const double change : {-kScaleDeviation, kScaleDeviation}) {
       const double log_scale = std::log(found.scale.loops) + change;
@@ -49,7 +48,7 @@ Explanation<Pose> settled_on_either_side(Climb<Pose>& climb, Explanation<Pose> f
       };
       unless_it_breaks_down(settle, CovarianceScale{found.scale.odometry, loops});
     }
-  }
+  } while (!about_the_same(found.scale, before));
   return found;
 }
 
