@@ -30,6 +30,8 @@ NATS = 1.0
 CONSTANTS = [
     Constant("kScaleDeviation", "2 ln 10",
              "deviation of the log of a factor on covariances: ten in the error", (2.3, 9.2)),
+    Constant("kBiasDeviation", "0.1",
+             "deviation of the mean error of odometry's turns, in those of a step", (0.03, 0.3)),
     Constant("kScaleStep", "3", "of variances, from one kind of loop to the next", (2, 10)),
     Constant("kLoopsBefore", "1", "loops of either kind that count as seen before any is", (0.5, 4)),
     Constant("kTailDof", "4", "degrees of freedom of Student's t of what loops measure", (2, 8)),
@@ -43,7 +45,6 @@ CONSTANTS = [
     Constant("kSettled", "0.01", "deviations below which a step of poses does not matter",
              (0.001, 0.1)),
     Constant("kSameWeight", "0.05", "change of a log weight that matters", (0.005, 0.5)),
-    Constant("kNodes", "4", "nodes to either side, for an integral", (0, 8)),
 ]
 # Of each move the place in a source behind which it is left out, and how.
 CLIMB = "climb/climb.cpp"
@@ -58,6 +59,11 @@ MOVES = {
                    "if ({off}) break;"),
     "loops weighed by the others": (CLIMB, "::weigh_by_others() {\n", "if ({off}) return false;"),
     "the look afar": (CLIMB, "::weigh_afar() {\n", "if ({off}) return false;"),
+    "the bias of odometry":
+        ("objective/objective.cpp",
+         "::bias_prior(const Explanation<Pose>& explanation,\n" + 44 * " " +
+         "const ScaledGraph<Pose>& graph) const {\n",
+         "if ({off}) return {{{{}}, TurnBias<Pose>::Zero(), TurnBias<Pose>::Zero()}};"),
     "slips of odometry": (CLIMB, "::find_slips() {\n", "if ({off}) return false;"),
     "coordinates leveled beside slips":
         (CLIMB, "::level_odometry() {\n", "if ({off}) return false;"),
@@ -92,7 +98,6 @@ def instrument(tree):
     replace(room / "objective/error_scales.cpp",
             [(f"constexpr {name}", f"const {name}")
              for name in ("double kWorst", "double kOther", "ByScale kPriorLoops")])
-    replace(room / "objective/loop_gain.cpp", [("2 * kNodes + 1, 1>", "Eigen::Dynamic, 1>")])
     replace(tree / "slam/src/online/engine.cpp", [("constexpr Index kFirst", "const Index kFirst")])
     replace(room / "constants.hpp",
             [("namespace isotherm::slam::detail {\n",
@@ -164,7 +169,7 @@ def page(base, rows, cell_count):
              line_of("as they are", "", "", "", base, base, True)]
     for constant in CONSTANTS:
         model = constant.name in ("kScaleDeviation", "kScaleStep", "kLoopsBefore", "kTailDof",
-                                  "kReach", "kNodes")
+                                  "kReach", "kBiasDeviation")
         lines += [line_of(f"`{constant.name}`", constant.meaning, constant.value, f"{value:g}",
                           rows[f"{constant.name}={value:g}"], base, not model)
                   for value in constant.tried if f"{constant.name}={value:g}" in rows]

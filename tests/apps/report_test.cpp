@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -344,6 +345,30 @@ TEST_F(Report, SaysHowSureVerdictsAreAndWhatTheFileIsWorth) {
       HasSubstr("Of the accuracy of odometry the file is off by more than a factor of ten"));
   EXPECT_THAT(stating(" 0.0025 0 0 0.0025 0 0.25\n"),
               HasSubstr("What the file states of the accuracy of odometry is meaningless"));
+}
+
+TEST_F(Report, SaysByHowMuchOdometryTurnsTooLittle) {
+  run_ok("simulate city --poses 800 --loops 200 --seed 4 -o city.g2o");
+  std::istringstream city(read_text(folder / "city.g2o"));
+  std::ostringstream turned;
+  for (std::string line; std::getline(city, line);) {
+    std::istringstream words(line);
+    std::string tag, rest;
+    std::int64_t from = 0, to = 0;
+    double x = 0.0, y = 0.0, angle = 0.0;
+    if (words >> tag >> from >> to >> x >> y >> angle && to == from + 1 && tag == "EDGE_SE2") {
+      std::getline(words, rest);
+      turned << tag << ' ' << from << ' ' << to << ' ' << x << ' ' << y << ' ' << angle - 1e-3;
+      line = rest;
+    }
+    turned << line << '\n';
+  }
+  write_text(folder / "turned.g2o", turned.str());
+  const auto json = document("prune turned.g2o");
+  std::string text;
+  for (const auto& paragraph : json["summary"]) text += paragraph["text"].get<std::string>();
+  EXPECT_THAT(text, testing::ContainsRegex("In each step the robot turned by (0.9|1|1.1)[0-9]* "
+                                           "mrad more than odometry tells\\."));
 }
 
 TEST_F(Report, LoopsThatNoOdometryReachesHaveNoChiSquaredAgainstIt) {

@@ -68,4 +68,19 @@ void slip(isotherm::slam::Constraint<Pose>& step, double deviations) {
   step.T_from_to = step.T_from_to * Pose::exp(deviations * (deviation * Pose::Tangent::Ones()));
 }
 
+/// Has odometry tell of each turn from a vertex to the next by so much too little.
+template <class Pose>
+void turn_less(isotherm::slam::PoseGraph<Pose>& graph,
+               const std::vector<isotherm::slam::Index>& odometry,
+               const Eigen::Matrix<double, Pose::kDof - Pose::kDim, 1>& bias) {
+  typename Pose::Tangent turn = Pose::Tangent::Zero();
+  turn.template tail<Pose::kDof - Pose::kDim>() = -bias;
+  for (const isotherm::slam::Index k : odometry) {
+    auto& edge = graph.constraints[k];
+    const bool forward = edge.from < edge.to;
+    const Pose T = (forward ? edge.T_from_to : edge.T_from_to.inverse()) * Pose::exp(turn);
+    edge.T_from_to = forward ? T : T.inverse();
+  }
+}
+
 }  // namespace isotherm_test

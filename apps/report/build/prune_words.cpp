@@ -1,9 +1,12 @@
 #include "report/build/prune_words.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -69,6 +72,15 @@ std::string words_of_slips(const std::vector<OdometrySlip>& slips) {
   return text + (slips.size() > kNamed ? ", …)." : ").");
 }
 
+// Of few axes, in their order.
+std::string words_of_bias(const std::vector<double>& bias) {
+  if (std::ranges::all_of(bias, [](double turn) { return turn == 0.0; })) return "";
+  std::vector<std::string> turns;
+  for (const double turn : bias) turns.push_back(fmt::format("{:.2g}", 1e3 * turn));
+  return fmt::format(" In each step the robot turned by {} mrad more than odometry tells{}.",
+                     fmt::join(turns, ", "), bias.size() > 1 ? " (about x, y, z)" : "");
+}
+
 std::string words_of_scales(const ConsensusResult& result) {
   std::string text = fmt::format(
       " Errors turn out to be {:.3g} times (odometry) and {:.3g} times (most loops) as large as "
@@ -79,7 +91,7 @@ std::string words_of_scales(const ConsensusResult& result) {
     text += fmt::format(" About {:.0f} % of the loops are less accurate than most.",
                         100.0 * result.share_of_worse);
   }
-  return text + words_of_slips(result.odometry_slips) +
+  return text + words_of_bias(result.odometry_bias) + words_of_slips(result.odometry_slips) +
          words_of_scale("the accuracy of odometry", result.odometry_scale) +
          words_of_scale("the accuracy of loops", result.loop_scale) +
          words_of_scale("the accuracy of rotation against translation", result.rotation_scale);

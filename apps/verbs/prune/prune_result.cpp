@@ -45,6 +45,7 @@ Json to_json(const ConsensusResult& result, const spectral::EdgeVerdicts& verdic
                {"odometry_scales", result.odometry_scales},
                {"loop_scales", result.loop_scales},
                {"odometry_slips", Json::array()},
+               {"odometry_bias", result.odometry_bias},
                {"rotation_scale", result.rotation_scale},
                {"share_of_worse", result.share_of_worse},
                {"settled", result.settled},

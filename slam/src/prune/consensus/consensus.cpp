@@ -30,6 +30,11 @@ typename Pose::Tangent shape_of(const std::vector<double>& scales, double mean) 
 }
 
 template <class Pose>
+detail::TurnBias<Pose> bias_of(const std::vector<double>& found) {
+  return detail::TurnBias<Pose>::Map(found.data());
+}
+
+template <class Pose>
 detail::Slips slips_as(const PoseGraph<Pose>& graph, const std::vector<OdometrySlip>& found) {
   detail::Slips slips;
   if (!found.empty()) slips.resize(graph.ids.size() - 1);
@@ -50,7 +55,8 @@ void add_conflicts(const PoseGraph<Pose>& graph, const EdgeRoles& roles, double 
   const detail::CovarianceScale scale = {result.odometry_scale, result.loop_scale};
   const detail::Shapes<Pose> shapes = {shape_of<Pose>(result.odometry_scales, scale.odometry),
                                        shape_of<Pose>(result.loop_scales, scale.loops),
-                                       slips_as(graph, result.odometry_slips)};
+                                       slips_as(graph, result.odometry_slips),
+                                       bias_of<Pose>(result.odometry_bias)};
   const auto reduced =
       detail::scaled_graph(detail::in_own_frames(graph, roles), roles, shapes).reduced;
   const double gate = chi_squared_quantile(1.0 - significance, Pose::kDof);

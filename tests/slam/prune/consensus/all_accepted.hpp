@@ -36,11 +36,15 @@ class AllAccepted {
            objective_.log_scale_peak(explanation_);
   }
 
-  /// Of odometry's steps.
-  std::vector<typename Pose::Matrix> covariances() const {
-    std::vector<const isotherm::slam::detail::Link<Pose>*> steps;
-    for (const auto& step : graph_.reduced.steps) steps.push_back(&step);
-    return estimate_.residual_covariances(steps);
+  /// Of the residuals of odometry's steps.
+  std::vector<isotherm::slam::detail::Belief<Pose>> steps() const {
+    std::vector<const isotherm::slam::detail::Link<Pose>*> links;
+    for (const auto& step : graph_.reduced.steps) links.push_back(&step);
+    std::vector<isotherm::slam::detail::Belief<Pose>> beliefs;
+    for (const auto& covariance : estimate_.residual_covariances(links)) {
+      beliefs.push_back({estimate_.residual(*links[beliefs.size()]), covariance});
+    }
+    return beliefs;
   }
 
  private:

@@ -1,4 +1,4 @@
-#include "prune/consensus/estimate/slip_changes.hpp"
+#include "prune/consensus/odometry/slip_changes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -63,8 +63,7 @@ class SlipChangesOf : public testing::Test {
 
   static std::vector<SlipChange> changes(const Objective<Pose>& objective, const Slips& slips) {
     const AllAccepted<Pose> all(objective, {}, {.slips = slips});
-    return objective.slip_changes(all.explanation(), all.graph(), all.estimate(),
-                                  all.covariances());
+    return objective.slip_changes(all.explanation(), all.graph(), all.steps());
   }
 
   PoseGraph<Pose> graph_;

@@ -89,7 +89,9 @@ struct ConsensusResult {
   std::vector<double> odometry_scales;
   std::vector<double> loop_scales;
   std::vector<OdometrySlip> odometry_slips;  ///< ascending
-  double rotation_scale = 1.0;               ///< of loops, rotation's against translation's
+  /// By how much more than odometry tells the robot turned in each step (rotation vector; rad).
+  std::vector<double> odometry_bias;
+  double rotation_scale = 1.0;  ///< of loops, rotation's against translation's
   /// Of the loops, those that are less accurate than most.
   double share_of_worse = 0.0;
   bool settled = true;  ///< false: max_rounds ended a climb

@@ -6,13 +6,15 @@
 #include <utility>
 
 #include "isotherm/base/parallel.hpp"
+#include "isotherm/base/random.hpp"
 #include "prune/consensus/constants.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
 
-constexpr int kMostSteps = 12;  // of Gauss-Newton, weights included
+constexpr int kMostSteps = 12;   // of Gauss-Newton, weights included
+constexpr int kMostBiases = 12;  // of odometry, one after the other
 constexpr int kFixedPointSteps = 30;
 
 // Maps on which near pairs are counted.
@@ -40,12 +42,14 @@ Assessment<Pose>::Assessment(const Objective<Pose>& objective, Pace pace, int th
       estimate_(found_.graph->reduced, pace_),
       odometry_(estimate_.layout()) {
   found_.covariances.assign(graph().loops.size(), Matrix::Zero());
+  found_.shifts.assign(graph().loops.size(), Tangent::Zero());
 }
 
 template <class Pose>
 void Assessment<Pose>::start_over() {
   estimate_.restore(odometry_);
   found_.held.clear();
+  found_.shifts.assign(graph().loops.size(), Tangent::Zero());
   found_.near_of.reset();
 }
 
@@ -62,7 +66,8 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   found_.mixture = now.mixture();
   find_peak(now);
   find_nearness(now);
-  const double fit = objective_.fit(now, *found_.graph, estimate_, found_.near);
+  const double fit =
+      objective_.fit(now, *found_.graph, estimate_, found_.near) + bias_->log_evidence();
   // The more redundancy there is, the narrower is the peak of the scales.
   now.redundancy = {};
   if (fit + objective_.log_scale_peak(now) < least) return false;
@@ -83,10 +88,21 @@ void Assessment<Pose>::find_nearness(const Explanation<Pose>& now) {
   const auto before = found_.near_of;
   const bool same = before && !is_much_more(accepted, *before) && !is_much_more(*before, accepted);
   if (nearness_held_ && same) return;
-  found_.near = objective_.near(estimate_.drawn(now.scale, kMaps));
+  found_.near = objective_.near(drawn_maps(now.scale));
   found_.near_of = accepted;
   nearness_found_.times += 1.0;
   if (pace_) pace_(NearnessFound::kWork);
+}
+
+template <class Pose>
+std::vector<std::vector<Pose>> Assessment<Pose>::drawn_maps(const CovarianceScale& scale) const {
+  auto maps = estimate_.drawn(scale, kMaps);
+  Random random(kMaps);  // others than the seeds of those
+  for (auto& map : maps) {
+    const auto deviations = random.normal_vector<TurnBias<Pose>>();
+    estimate_.retract(bias_->moves(bias_->drawn(deviations)), map);
+  }
+  return maps;
 }
 
 template <class Pose>
@@ -98,8 +114,30 @@ void Assessment<Pose>::rescale(const Shapes<Pose>& shapes) {
   found_.held.clear();
 }
 
+// Until another bias is not worth mentioning, since odometry is contracted anew for it.
 template <class Pose>
 void Assessment<Pose>::find_peak(Explanation<Pose>& now) {
+  for (int step = 0; step < kMostBiases; ++step) {
+    settle(now);
+    bias_.emplace(estimate_, graph(), objective_.bias_prior(now, *found_.graph),
+                  now.scale.odometry);
+    if (bias_->gain() < kBetter || step + 1 == kMostBiases) return;
+    turn_by(bias_->likeliest(), now);
+  }
+}
+
+// With the poses that follow it, and what was found of the loops.
+template <class Pose>
+void Assessment<Pose>::turn_by(const TurnBias<Pose>& bias, Explanation<Pose>& now) {
+  estimate_.follow(bias_->moves(bias - now.shapes.bias));
+  now.shapes.bias = bias;
+  auto held = std::move(found_.held);
+  rescale(now.shapes);
+  found_.held = std::move(held);
+}
+
+template <class Pose>
+void Assessment<Pose>::settle(Explanation<Pose>& now) {
   weigh_new(now);
   estimate_.weigh_loops(accepted_information(now));
   bool believed = false;
@@ -196,13 +234,21 @@ void Assessment<Pose>::predict(Explanation<Pose>& now) {
     (!alone && first == second ? solved : composed).push_back(loop);
   }
   parallel_for_each(composed.size(), threads_, [&](std::size_t i) {
-    found_.covariances[composed[i]] = odometry_says(composed[i], now.scale.odometry);
+    believe(composed[i], odometry_says(composed[i], now.scale.odometry));
   });
   solve(now, solved, !alone);
   found_.held = accepted_information(now);
 }
 
-// The covariance of a loop's residual where nothing but odometry is known.
+// By the covariance of its residual where odometry's bias is known.
+template <class Pose>
+void Assessment<Pose>::believe(Index loop, const Matrix& covariance) {
+  const auto more = bias_->of_loop(graph().loops[loop]);
+  found_.covariances[loop] = covariance + more.P;
+  found_.shifts[loop] = more.r;
+}
+
+// The covariance of a loop's residual where nothing but odometry is known, and its bias.
 template <class Pose>
 typename Pose::Matrix Assessment<Pose>::odometry_says(Index loop, double scale) const {
   const auto J = residual_jacobian<Pose>(estimate_.residual(graph().loops[loop]));
@@ -218,16 +264,17 @@ void Assessment<Pose>::solve(Explanation<Pose>& now, const std::vector<Index>& l
   if (odometry) {
     for (const auto& step : graph().steps) links.push_back(&step);
   }
-  auto covariances = estimate_.residual_covariances(links, threads_);
-  for (std::size_t i = 0; i < loops.size(); ++i) found_.covariances[loops[i]] = covariances[i];
+  const auto covariances = estimate_.residual_covariances(links, threads_);
+  auto steps = std::make_shared<std::vector<Belief<Pose>>>(covariances.size() - loops.size());
+  parallel_for_each(covariances.size(), threads_, [&](std::size_t i) {
+    if (i < loops.size()) return believe(loops[i], covariances[i]);
+    const std::size_t k = i - loops.size();
+    const auto more = bias_->of_step(k);
+    (*steps)[k] = {estimate_.residual(*links[i]) + more.r, covariances[i] + more.P};
+  });
   OdometryComponent<Pose> told;
-  found_.steps.reset();
-  if (odometry) {
-    covariances.erase(covariances.begin(),
-                      covariances.begin() + static_cast<std::ptrdiff_t>(loops.size()));
-    told = objective_.odometry(now, *found_.graph, estimate_, covariances, threads_);
-    found_.steps = std::make_shared<std::vector<Matrix>>(std::move(covariances));
-  }
+  if (odometry) told = objective_.odometry(now, *found_.graph, *steps, threads_);
+  found_.steps = odometry ? std::move(steps) : nullptr;
   now.odometry_cost = told.cost;
   now.redundancy.odometry = told.redundancy;
 }
@@ -235,7 +282,7 @@ void Assessment<Pose>::solve(Explanation<Pose>& now, const std::vector<Index>& l
 template <class Pose>
 std::vector<SlipChange> Assessment<Pose>::slip_changes(const Explanation<Pose>& now) const {
   if (!found_.steps) return {};
-  return objective_.slip_changes(now, *found_.graph, estimate_, *found_.steps, threads_);
+  return objective_.slip_changes(now, *found_.graph, *found_.steps, threads_);
 }
 
 template <class Pose>

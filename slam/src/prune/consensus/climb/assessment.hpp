@@ -17,6 +17,7 @@ template <class Pose>
 class Assessment {
  public:
   using Matrix = typename Pose::Matrix;
+  using Tangent = typename Pose::Tangent;
 
   /// `objective` must outlive this object. Loops are weighed on `threads` threads (0: all cores).
   explicit Assessment(const Objective<Pose>& objective, Pace pace = {}, int threads = 1);
@@ -54,10 +55,10 @@ class Assessment {
     typename Objective<Pose>::NearByClass near{};
     std::optional<std::size_t> near_of;  // loops that were accepted then; none: to be found anew
     std::vector<Matrix> covariances;     // of residuals, one a loop; with it where it is accepted
+    std::vector<Tangent> shifts;         // what those are more for what odometry's bias is likely
     // Information of the loops that the covariances are given; none where empty.
     std::vector<Matrix> held;
-    std::shared_ptr<const std::vector<Matrix>>
-        steps;  // covariances of odometry's residuals, if any
+    std::shared_ptr<const std::vector<Belief<Pose>>> steps;  // of odometry's residuals, if any
   };
   const Findings& findings() const noexcept { return found_; }
 
@@ -82,6 +83,12 @@ class Assessment {
   /// odometry is known.
   std::vector<SlipChange> slip_changes(const Explanation<Pose>& now) const;
 
+  /// Of a loop's residual.
+  Belief<Pose> belief(Index loop) const {
+    return {estimate_.residual(graph().loops[loop]) + found_.shifts[loop],
+            found_.covariances[loop]};
+  }
+
   /// How much of each coordinate of an accepted loop is left to tell how accurate it is:
   /// diag(I - Omega P), Omega its mean information, P the residual's covariance.
   typename Pose::Tangent redundancy(const Explanation<Pose>& now, Index loop) const;
@@ -94,6 +101,9 @@ class Assessment {
  private:
   void rescale(const Shapes<Pose>& shapes);
   void find_peak(Explanation<Pose>& now);
+  void settle(Explanation<Pose>& now);
+  void turn_by(const TurnBias<Pose>& bias, Explanation<Pose>& now);
+  std::vector<std::vector<Pose>> drawn_maps(const CovarianceScale& scale) const;
   void find_nearness(const Explanation<Pose>& now);
   bool reweigh(Explanation<Pose>& now, bool anyway);
   Matrix information(const Explanation<Pose>& now, Index loop) const {
@@ -102,15 +112,13 @@ class Assessment {
   std::vector<Matrix> accepted_information(const Explanation<Pose>& now) const;
   Matrix uncertainty(const Explanation<Pose>& now, Index loop) const;
   Misfit misfit(const Explanation<Pose>& now, Index loop) const;
-  Belief<Pose> belief(Index loop) const {
-    return {estimate_.residual(graph().loops[loop]), found_.covariances[loop]};
-  }
   OwnError<Pose> own_error(Index loop) const {
     return {graph().loops[loop].covariance, objective_.stated().reduced.loops[loop].covariance};
   }
   void weigh_new(Explanation<Pose>& now);
   void predict(Explanation<Pose>& now);
   Matrix odometry_says(Index loop, double scale) const;
+  void believe(Index loop, const Matrix& covariance);
   void solve(Explanation<Pose>& now, const std::vector<Index>& loops, bool odometry);
   void weigh(Explanation<Pose>& now);
   void find_redundancy(Explanation<Pose>& now) const;
@@ -123,6 +131,7 @@ class Assessment {
   int threads_;
   Findings found_;
   Estimate<Pose> estimate_;
+  std::optional<BiasFit<Pose>> bias_;  // at the peak
   typename Estimate<Pose>::Layout odometry_;
   bool nearness_held_ = false;
   NearnessFound nearness_found_;

@@ -468,7 +468,7 @@ bool Climb<Pose>::try_all_as(const Selection& loops, bool accepted) {
   const auto change = [&](auto& now) {
     for (const Index k : loops) now.accepted[k] = accepted;
   };
-  if (loops.empty() || !try_with(change)) return false;
+  if (loops.empty() || !try_with(change, {.learning = accepted})) return false;
   if (!accepted) {
     for (const Index k : loops) dropped_[k] = true;
   }

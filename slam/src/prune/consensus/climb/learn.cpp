@@ -115,7 +115,7 @@ Residuals<Pose> residuals_of(const Assessment<Pose>& assessment,
     const auto& link = assessment.graph().loops[k];
     if (!explanation.accepted[k] || link.a == link.b) continue;
     const auto& stated = assessment.objective().stated().reduced.loops[k];
-    const typename Pose::Tangent r = assessment.estimate().residual(link);
+    const typename Pose::Tangent r = assessment.belief(loop).r;
     residuals.push_back({r.cwiseProduct(link.information * r), r.dot(stated.information * r),
                          assessment.redundancy(explanation, loop), explanation.weights[k]});
   }

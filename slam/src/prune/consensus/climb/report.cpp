@@ -71,6 +71,7 @@ void report(const std::vector<Explanation<Pose>>& found, double significance,
     result.odometry_scales.push_back(best.scale.odometry * best.shapes.odometry[d]);
     result.loop_scales.push_back(best.scale.loops * best.shapes.loops[d]);
   }
+  result.odometry_bias.assign(best.shapes.bias.begin(), best.shapes.bias.end());
   result.rotation_scale = rotation_against_translation<Pose>(best.shapes.loops);
   result.share_of_worse = best.mixture().share_of_worse();
   result.log_evidence = best.evidence;

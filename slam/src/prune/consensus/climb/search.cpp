@@ -75,16 +75,18 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole,
   return standpoints;
 }
 
-// The loops that were found, better explained: by a climb from the sharpest scales that all begin
-// at, which no other loops or peaks lead astray, and from scales on either side.
+// The loops that were found, better explained: by climbs from the sharpest scales that all begin at
+// and from the least accurate odometry, which no other loops or peaks lead astray, and from scales
+// on either side.
 template <class Pose>
 void settle_anew(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
-  const auto& [odometry, loops] = kStarts[kStartsAlways - 1];
   if (!best_of(found).tells_of_scales()) return;
   const std::vector<bool> accepted = best_of(found).accepted;
   Climb<Pose> afresh = climb.on(climb.objective());
   const auto grow = [&](const auto& start) { found.push_back(afresh.settled_on(accepted, start)); };
-  unless_it_breaks_down(grow, CovarianceScale{odometry, loops});
+  for (const auto& [odometry, loops] : {kStarts[kStartsAlways - 1], kStarts[1]}) {
+    unless_it_breaks_down(grow, CovarianceScale{odometry, loops});
+  }
   found.push_back(settled_on_either_side(climb, best_of(found)));
 }
 

@@ -80,6 +80,7 @@ Standpoint<Pose> carry(const Explanation<Pose>& before,
     explanation.weights.push_back(loop ? before.weights[*loop] : LoopWeight{});
     findings.held.push_back(loop ? found.held[*loop] : Pose::Matrix::Zero());
     findings.covariances.push_back(loop ? found.covariances[*loop] : Pose::Matrix::Zero());
+    findings.shifts.push_back(loop ? found.shifts[*loop] : Pose::Tangent::Zero());
   }
   explanation.layout =
       carry_layout<Pose>(before.layout, found.graph->reduced, findings.graph->reduced, known);

@@ -173,20 +173,32 @@ typename Estimate<Pose>::AtFactor Estimate<Pose>::at_factor(const Link<Pose>& li
   return {T_a_b, link.T_a_b.between(T_a_b).log()};
 }
 
-// Of a residual, by the poses at its ends, where the factor was formed.
-template <class Pose>
-struct Estimate<Pose>::Derivative {
-  Tangent residual;
-  Matrix by_a;
-  Matrix by_b;
-};
-
 // d(T_a^-1 T_b) = -Ad d_a + d_b, with Ad the adjoint of T_b_a.
 template <class Pose>
 typename Estimate<Pose>::Derivative Estimate<Pose>::derivative(const Link<Pose>& link) const {
   const auto [T_a_b, r] = at_factor(link);
   const Matrix J = residual_jacobian<Pose>(r);
   return {r, -J * T_a_b.inverse().adjoint(), J};
+}
+
+// Along a chain far turns are those of many steps, each of which turns by little.
+template <class Pose>
+void Estimate<Pose>::follow(const Eigen::VectorXd& moves) {
+  const std::vector<Pose> before = poses_;
+  const auto of = [&](Index node) -> Tangent {
+    const Index v = equations_->gauge().variable[node];
+    if (v < 0) return Tangent::Zero();
+    return moves.template segment<Pose::kDof>(v * Pose::kDof);
+  };
+  equations_->retract(moves, poses_);
+  for (std::size_t k = 0; k < graph_->contracted; ++k) {
+    const auto& step = graph_->steps[k];
+    const Pose T_a_b = before[step.a].between(before[step.b]);
+    const Tangent change = of(step.b) - T_a_b.inverse().adjoint() * of(step.a);
+    poses_[step.b] = poses_[step.a] * T_a_b * Pose::exp(change);
+  }
+  factorised_ = false;
+  move_.resize(0);
 }
 
 template <class Pose>

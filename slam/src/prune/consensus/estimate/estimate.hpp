@@ -91,6 +91,25 @@ class Estimate {
   /// links join them.
   std::pair<Index, Index> parts(const Link<Pose>& loop) const;
 
+  /// Of a residual, by the poses at its ends.
+  struct Derivative {
+    Tangent residual;
+    Matrix by_a;
+    Matrix by_b;
+  };
+
+  /// Where the factor was formed.
+  Derivative derivative(const Link<Pose>& link) const;
+
+  /// Moves the free poses, so far that steps of odometry still change by little, as what they tell
+  /// does; update() must follow.
+  void follow(const Eigen::VectorXd& moves);
+
+  /// A map near poses() where the free ones are moved by so much.
+  void retract(const Eigen::VectorXd& moves, std::vector<Pose>& map) const {
+    equations_->retract(moves, map);
+  }
+
   /// Covariances of the residuals of `links` where the factor of the last update was formed, found
   /// on `threads` threads (0: all cores). The ends of each must be connected.
   std::vector<Matrix> residual_covariances(std::span<const Link<Pose>* const> links,
@@ -126,8 +145,6 @@ class Estimate {
   double step();
   struct AtFactor;
   AtFactor at_factor(const Link<Pose>& link) const;
-  struct Derivative;
-  Derivative derivative(const Link<Pose>& link) const;
   PoseGraph<Pose> used_links(const std::vector<bool>& accepted);
   void join_components(const PoseGraph<Pose>& used);
 

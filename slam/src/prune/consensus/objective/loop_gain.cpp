@@ -21,6 +21,10 @@ constexpr double kLeastShare = 1e-5;
 constexpr double kNoDeviation = 0.1;
 constexpr double kNodeStep = 0.7;
 
+// Nodes on either side for the integral over the log of a factor: to 2.8 deviations, by the
+// trapezoidal rule.
+constexpr int kNodes = 4;
+
 using Nodes = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, 2 * kNodes + 1, 1>;
 
 struct Factors {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "prune/consensus/estimate/belief.hpp"
 #include "prune/consensus/estimate/estimate.hpp"
 #include "prune/consensus/objective/error_scales.hpp"
 
@@ -13,13 +14,6 @@ struct Prediction {
   typename Pose::Tangent r;         ///< the residual
   typename Pose::Tangent variance;  ///< that they leave it, without the loop's own error
   double log_sigma = 0.0;           ///< log |Sigma|, of that error
-};
-
-/// Of a residual, by an estimate.
-template <class Pose>
-struct Belief {
-  typename Pose::Tangent r;
-  typename Pose::Matrix P;  ///< its covariance
 };
 
 /// What is believed without a loop, by what is with it, whose mean information is Omega.

@@ -7,8 +7,8 @@
 #include "matrices/decompositions.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
 #include "prune/consensus/estimate/map_volume.hpp"
-#include "prune/consensus/estimate/step_spread.hpp"
 #include "prune/consensus/objective/own_frames.hpp"
+#include "prune/consensus/odometry/step_spread.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -36,6 +36,18 @@ typename Pose::Tangent most_scales(const StepSpread& spread) {
   return logs;
 }
 
+template <class Pose>
+typename Pose::Tangent mean_variance(const Chain<Pose>& chain) {
+  typename Pose::Tangent sum = Pose::Tangent::Zero();
+  double edges = 0.0;
+  for (const auto& edge : chain) {
+    if (!edge) continue;
+    sum += edge->covariance.diagonal();
+    edges += 1.0;
+  }
+  return sum / std::max(edges, 1.0);
+}
+
 }  // namespace
 
 template <class Pose>
@@ -50,6 +62,7 @@ Objective<Pose>::Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
       window_(window),
       calibrate_(calibrate),
       most_odometry_(most_scales<Pose>(calibrate ? step_spread(graph_, roles_) : StepSpread{})),
+      step_variance_(mean_variance<Pose>(chain_)),
       longest_slip_(most_scales<Pose>(step_length(graph_, roles_))) {
   const MapVolume<Pose> map(stated_.reduced.poses);
   log_volume_ = 0.5 * (map.variance().array().log().sum() + Pose::kDof * kLog2Pi);
@@ -119,6 +132,16 @@ double Objective<Pose>::fit(const Explanation<Pose>& explanation, const ScaledGr
          0.5 * (estimate.log_determinant() - log_information) +
          joined * (0.5 * Pose::kDof * kLog2Pi - log_volume_) - alternatives +
          log_prior(kept, explanation.accepted.size());
+}
+
+template <class Pose>
+BiasPrior<Pose> Objective<Pose>::bias_prior(const Explanation<Pose>& explanation,
+                                            const ScaledGraph<Pose>& graph) const {
+  const double share = calibrate_ ? kBiasDeviation * kBiasDeviation : 0.0;
+  const auto variance =
+      share * explanation.scale.odometry * explanation.shapes.odometry.cwiseProduct(step_variance_);
+  return {graph.by_bias, explanation.shapes.bias,
+          variance.template tail<Pose::kDof - Pose::kDim>()};
 }
 
 // How much less likely it is that the robot moved as a slip of each size leaves it to have, in the

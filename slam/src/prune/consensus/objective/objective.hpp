@@ -7,14 +7,15 @@
 #include <vector>
 
 #include "prune/consensus/estimate/estimate.hpp"
-#include "prune/consensus/estimate/odometry_component.hpp"
-#include "prune/consensus/estimate/slip_changes.hpp"
 #include "prune/consensus/objective/error_scales.hpp"
 #include "prune/consensus/objective/near_density.hpp"
 #include "prune/consensus/objective/runs.hpp"
 #include "prune/consensus/objective/scale_prior.hpp"
 #include "prune/consensus/objective/scaled_graph.hpp"
 #include "prune/consensus/objective/standing.hpp"
+#include "prune/consensus/odometry/bias_fit.hpp"
+#include "prune/consensus/odometry/odometry_component.hpp"
+#include "prune/consensus/odometry/slip_changes.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -139,30 +140,32 @@ class Objective {
             detail::scale_deviation(redundancy.loops.sum())};
   }
 
-  /// `estimate` must have settled on the explanation's loops and scales, on `graph`.
+  /// By the residuals of the steps of `graph` where the explanation's loops and scales agree best.
   OdometryComponent<Pose> odometry(const Explanation<Pose>& explanation,
-                                   const ScaledGraph<Pose>& graph, const Estimate<Pose>& estimate,
-                                   std::span<const typename Pose::Matrix> covariances,
-                                   int threads = 1) const {
+                                   const ScaledGraph<Pose>& graph,
+                                   std::span<const Belief<Pose>> steps, int threads = 1) const {
     return odometry_component<Pose>(contracted(explanation, graph), explanation.scale.odometry,
-                                    estimate, covariances, threads);
+                                    steps, threads);
   }
 
   /// Edges of odometry that are likely to err more than others, or no more. As odometry().
   std::vector<SlipChange> slip_changes(const Explanation<Pose>& explanation,
                                        const ScaledGraph<Pose>& graph,
-                                       const Estimate<Pose>& estimate,
-                                       std::span<const typename Pose::Matrix> covariances,
-                                       int threads = 1) const {
+                                       std::span<const Belief<Pose>> steps, int threads = 1) const {
     return detail::slip_changes<Pose>(contracted(explanation, graph), explanation.scale.odometry,
-                                      slip_odds(explanation), estimate, covariances, threads);
+                                      slip_odds(explanation), steps, threads);
   }
+
+  /// Of odometry's bias, where its errors are as in the explanation: normal, by the mean variance
+  /// of a step's.
+  BiasPrior<Pose> bias_prior(const Explanation<Pose>& explanation,
+                             const ScaledGraph<Pose>& graph) const;
 
   /// log of the volume of relative poses that the map of odometry allows.
   double log_volume() const noexcept { return log_volume_; }
 
-  /// The evidence, but for what log_scale_peak() says. `estimate` must have settled on the
-  /// explanation's loops, scales and weights, on `graph`.
+  /// The evidence, but for what log_scale_peak() and BiasFit::log_evidence() say. `estimate` must
+  /// have settled on the explanation's loops, scales and weights, on `graph`.
   double fit(const Explanation<Pose>& explanation, const ScaledGraph<Pose>& graph,
              const Estimate<Pose>& estimate, const NearByClass& near) const;
 
@@ -178,7 +181,8 @@ class Objective {
   SlipSizes slip_odds(const Explanation<Pose>& explanation) const;
   ContractedChain<Pose> contracted(const Explanation<Pose>& explanation,
                                    const ScaledGraph<Pose>& graph) const {
-    return {chain_, explanation.shapes.odometry, explanation.shapes.slips, graph.reduced};
+    const auto& [odometry, loops, slips, bias] = explanation.shapes;
+    return {chain_, odometry, slips, bias, graph.reduced};
   }
   double loops_fit(const Explanation<Pose>& explanation, const ScaledGraph<Pose>& graph,
                    const Estimate<Pose>& estimate) const;
@@ -192,7 +196,8 @@ class Objective {
   Index window_;
   bool calibrate_;
   typename Pose::Tangent most_odometry_;
-  typename Pose::Tangent longest_slip_;  // logs of factors as most_odometry_: as long as steps are
+  typename Pose::Tangent step_variance_;  // mean, as stated
+  typename Pose::Tangent longest_slip_;   // logs of factors as most_odometry_: as long as steps are
   double log_volume_;
   std::vector<double> log_sigma_;  // log|Sigma| of each loop
 };

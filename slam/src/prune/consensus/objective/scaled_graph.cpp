@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "graph/find_root.hpp"
@@ -30,12 +31,31 @@ void apply(const Slips& slips, const std::vector<std::optional<Index>>& edges,
   }
 }
 
+// From a vertex to the next.
+template <class Pose>
+Pose motion(const Constraint<Pose>& edge) {
+  return edge.from < edge.to ? edge.T_from_to : edge.T_from_to.inverse();
+}
+
+template <class Pose>
+void turn(const TurnBias<Pose>& bias, const std::vector<std::optional<Index>>& edges,
+          PoseGraph<Pose>& graph) {
+  for (const auto& edge : edges) {
+    if (!edge) continue;
+    auto& told = graph.constraints[*edge];
+    const Pose T = turned(motion(told), bias);
+    told.T_from_to = told.from < told.to ? T : T.inverse();
+  }
+}
+
 template <class Pose>
 PoseGraph<Pose> with_shapes(PoseGraph<Pose> graph, const EdgeRoles& roles,
                             const Shapes<Pose>& shapes) {
   apply(shapes.odometry, roles.odometry, graph);
   apply(shapes.loops, roles.candidates, graph);
-  if (!shapes.slips.empty()) apply(shapes.slips, chain_edges(graph, roles), graph);
+  const auto chain = chain_edges(graph, roles);
+  if (!shapes.slips.empty()) apply(shapes.slips, chain, graph);
+  if (!shapes.bias.isZero(0.0)) turn<Pose>(shapes.bias, chain, graph);
   return graph;
 }
 
@@ -55,6 +75,21 @@ Index free_poses(const ReducedGraph<Pose>& graph) {
 }
 
 template <class Pose>
+std::vector<ByBias<Pose>> steps_by_bias(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
+                                        const ReducedGraph<Pose>& reduced) {
+  const auto chain = chain_edges(graph, roles);
+  std::vector<ByBias<Pose>> steps;
+  for (const auto& step : std::span(reduced.steps).first(reduced.contracted)) {
+    ByBias<Pose> by = ByBias<Pose>::Zero();
+    for (Index v = reduced.vertex[step.a]; v < reduced.vertex[step.b]; ++v) {
+      by = by_bias_after<Pose>(by, motion(graph.constraints[*chain[v]]));
+    }
+    steps.push_back(by);
+  }
+  return steps;
+}
+
+template <class Pose>
 double log_information(const std::vector<Link<Pose>>& links) {
   double sum = 0.0;
   for (const auto& link : links) {
@@ -68,9 +103,10 @@ double log_information(const std::vector<Link<Pose>>& links) {
 template <class Pose>
 ScaledGraph<Pose> scaled_graph(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                                const Shapes<Pose>& shapes) {
-  ScaledGraph<Pose> scaled{shapes == Shapes<Pose>{}
-                               ? reduce(graph, roles)
-                               : reduce(with_shapes(graph, roles, shapes), roles)};
+  if (!(shapes == Shapes<Pose>{}))
+    return scaled_graph(with_shapes(graph, roles, shapes), roles, {});
+  ScaledGraph<Pose> scaled{.reduced = reduce(graph, roles)};
+  scaled.by_bias = steps_by_bias(graph, roles, scaled.reduced);
   scaled.log_information = log_information(scaled.reduced.steps);
   scaled.variables = free_poses(scaled.reduced);
   return scaled;

@@ -1,24 +1,29 @@
 #pragma once
 
+#include <vector>
+
 #include "prune/consensus/estimate/estimate.hpp"
-#include "prune/consensus/estimate/slips.hpp"
+#include "prune/consensus/odometry/slips.hpp"
+#include "prune/consensus/odometry/turn_bias.hpp"
 
 namespace isotherm::slam::detail {
 
 /// Factors on the variances of each coordinate, of product 1: files give the accuracy of
 /// translation and of rotation in units that are easily mistaken, and robots drive straighter than
-/// they tell. And of single edges of odometry.
+/// they tell. And of single edges of odometry, and what all of them err by alike.
 template <class Pose>
 struct Shapes {
   typename Pose::Tangent odometry = Pose::Tangent::Ones();
   typename Pose::Tangent loops = Pose::Tangent::Ones();
   Slips slips;
+  TurnBias<Pose> bias = TurnBias<Pose>::Zero();
 
   bool operator==(const Shapes&) const = default;
 
   /// To rounding.
   bool is_about(const Shapes& other) const {
-    return odometry.isApprox(other.odometry) && loops.isApprox(other.loops) && slips == other.slips;
+    return odometry.isApprox(other.odometry) && loops.isApprox(other.loops) &&
+           slips == other.slips && bias == other.bias;
   }
 };
 
@@ -31,8 +36,9 @@ double rotation_against_translation(const typename Pose::Tangent& shape);
 template <class Pose>
 struct ScaledGraph {
   ReducedGraph<Pose> reduced;
-  double log_information = 0.0;  ///< log |Omega|, summed over its steps
-  Index variables = 0;           ///< poses that are free in it
+  std::vector<ByBias<Pose>> by_bias;  ///< one a contracted step
+  double log_information = 0.0;       ///< log |Omega|, summed over its steps
+  Index variables = 0;                ///< poses that are free in it
 
   /// Whether one path of trusted edges at most joins any two poses.
   bool is_forest() const { return reduced.steps.size() == static_cast<std::size_t>(variables); }

@@ -1,4 +1,4 @@
-#include "prune/consensus/estimate/step_edges.hpp"
+#include "prune/consensus/odometry/step_edges.hpp"
 
 #include "isotherm/slam/graph/information.hpp"
 

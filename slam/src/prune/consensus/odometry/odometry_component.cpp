@@ -1,4 +1,4 @@
-#include "prune/consensus/estimate/odometry_component.hpp"
+#include "prune/consensus/odometry/odometry_component.hpp"
 
 #include <vector>
 
@@ -21,9 +21,7 @@ void add_edge(const StepError<Pose>& step, const typename Pose::Matrix& carry,
 
 template <class Pose>
 OdometryComponent<Pose> odometry_component(const ContractedChain<Pose>& odometry, double scale,
-                                           const Estimate<Pose>& estimate,
-                                           std::span<const typename Pose::Matrix> covariances,
-                                           int threads) {
+                                           std::span<const Belief<Pose>> residuals, int threads) {
   using Matrix = typename Pose::Matrix;
   const auto& reduced = odometry.reduced;
   std::vector<OdometryComponent<Pose>> parts(parallel_block_count(reduced.steps.size()));
@@ -31,7 +29,7 @@ OdometryComponent<Pose> odometry_component(const ContractedChain<Pose>& odometry
       reduced.steps.size(), threads, [&](std::size_t block, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
           const auto& step = reduced.steps[k];
-          const auto error = step_error<Pose>(step, estimate.residual(step), covariances[k], scale);
+          const auto error = step_error<Pose>(step, residuals[k], scale);
           const auto add = [&](const Matrix& carry, const Matrix& Sigma) {
             add_edge<Pose>(error, carry, Sigma, parts[block]);
           };
@@ -54,10 +52,8 @@ OdometryComponent<Pose> odometry_component(const ContractedChain<Pose>& odometry
 }
 
 template OdometryComponent<Pose2> odometry_component(const ContractedChain<Pose2>&, double,
-                                                     const Estimate<Pose2>&,
-                                                     std::span<const Pose2::Matrix>, int);
+                                                     std::span<const Belief<Pose2>>, int);
 template OdometryComponent<Pose3> odometry_component(const ContractedChain<Pose3>&, double,
-                                                     const Estimate<Pose3>&,
-                                                     std::span<const Pose3::Matrix>, int);
+                                                     std::span<const Belief<Pose3>>, int);
 
 }  // namespace isotherm::slam::detail

@@ -4,8 +4,10 @@
 #include <optional>
 #include <vector>
 
+#include "prune/consensus/estimate/belief.hpp"
 #include "prune/consensus/estimate/reduced_graph.hpp"
-#include "prune/consensus/estimate/slips.hpp"
+#include "prune/consensus/odometry/slips.hpp"
+#include "prune/consensus/odometry/turn_bias.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -25,12 +27,14 @@ using Chain = std::vector<std::optional<ChainEdge<Pose>>>;
 template <class Pose>
 Chain<Pose> chain_of(const PoseGraph<Pose>& graph, const EdgeRoles& roles);
 
-/// A chain with factors on the variances of its coordinates, and what was contracted of it.
+/// A chain with factors on the variances of its coordinates and a bias, and what was contracted of
+/// it.
 template <class Pose>
 struct ContractedChain {
   const Chain<Pose>& chain;
   const typename Pose::Tangent& shape;
   const Slips& slips;
+  const TurnBias<Pose>& bias;
   const ReducedGraph<Pose>& reduced;
 };
 
@@ -40,7 +44,7 @@ struct ContractedChain {
 template <class Pose, class Visit>
 void visit_edges(const ContractedChain<Pose>& odometry, std::size_t k, Visit&& visit) {
   using Matrix = typename Pose::Matrix;
-  const auto& [chain, shape, slips, reduced] = odometry;
+  const auto& [chain, shape, slips, bias, reduced] = odometry;
   const Link<Pose>& step = reduced.steps[k];
   const typename Pose::Tangent root = shape.cwiseSqrt();
   Pose onward;  // from the edge's end to the step's
@@ -48,8 +52,9 @@ void visit_edges(const ContractedChain<Pose>& odometry, std::size_t k, Visit&& v
     const ChainEdge<Pose>& edge = *chain[v];
     const double factor = slip_factor(slip_of(slips, v));
     const Matrix Sigma = factor * (root.asDiagonal() * edge.covariance * root.asDiagonal());
-    visit(v, Matrix((edge.forward ? onward : edge.T * onward).inverse().adjoint()), Sigma);
-    onward = edge.T * onward;
+    const Pose from_start = turned(edge.T, bias) * onward;
+    visit(v, Matrix((edge.forward ? onward : from_start).inverse().adjoint()), Sigma);
+    onward = from_start;
   }
 }
 
@@ -60,12 +65,11 @@ struct StepError {
   typename Pose::Matrix spare;  ///< Omega - Omega P Omega / scale: what of it is left over
 };
 
-/// `r`: its residual, with covariance `P`, where the factor on its covariance is `scale`.
+/// Where the factor on its covariance is `scale`.
 template <class Pose>
-StepError<Pose> step_error(const Link<Pose>& step, const typename Pose::Tangent& r,
-                           const typename Pose::Matrix& P, double scale) {
-  const typename Pose::Matrix fitted = step.information * P;
-  return {step.information * r, step.information - fitted * step.information / scale};
+StepError<Pose> step_error(const Link<Pose>& step, const Belief<Pose>& residual, double scale) {
+  const typename Pose::Matrix fitted = step.information * residual.P;
+  return {step.information * residual.r, step.information - fitted * step.information / scale};
 }
 
 }  // namespace isotherm::slam::detail

@@ -1,4 +1,4 @@
-#include "prune/consensus/estimate/slips.hpp"
+#include "prune/consensus/odometry/slips.hpp"
 
 #include <algorithm>
 

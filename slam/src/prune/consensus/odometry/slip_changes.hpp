@@ -4,8 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "prune/consensus/estimate/estimate.hpp"
-#include "prune/consensus/estimate/step_edges.hpp"
+#include "prune/consensus/odometry/step_edges.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -23,8 +22,6 @@ struct SlipChange {
 template <class Pose>
 std::vector<SlipChange> slip_changes(const ContractedChain<Pose>& odometry, double scale,
                                      const std::array<double, kSlipSizes>& log_odds,
-                                     const Estimate<Pose>& estimate,
-                                     std::span<const typename Pose::Matrix> covariances,
-                                     int threads = 1);
+                                     std::span<const Belief<Pose>> residuals, int threads = 1);
 
 }  // namespace isotherm::slam::detail

@@ -1,4 +1,4 @@
-#include "prune/consensus/estimate/step_spread.hpp"
+#include "prune/consensus/odometry/step_spread.hpp"
 
 #include <algorithm>
 #include <vector>

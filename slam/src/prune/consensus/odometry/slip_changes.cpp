@@ -1,4 +1,4 @@
-#include "prune/consensus/estimate/slip_changes.hpp"
+#include "prune/consensus/odometry/slip_changes.hpp"
 
 #include <cmath>
 #include <optional>
@@ -60,7 +60,7 @@ std::optional<SlipChange> best_change(const ContractedChain<Pose>& odometry, std
                                       const StepError<Pose>& error, double scale,
                                       const LogOdds& log_odds) {
   using Matrix = typename Pose::Matrix;
-  const auto& [chain, shape, slips, reduced] = odometry;
+  const auto& [chain, shape, slips, bias, reduced] = odometry;
   const auto& step = reduced.steps[k];
   const Index first = reduced.vertex[step.a];
   const auto edges = static_cast<std::size_t>(reduced.vertex[step.b] - first);
@@ -95,14 +95,12 @@ std::vector<SlipChange> best_of_runs(const std::vector<std::optional<SlipChange>
 template <class Pose>
 std::vector<SlipChange> slip_changes(const ContractedChain<Pose>& odometry, double scale,
                                      const std::array<double, kSlipSizes>& log_odds,
-                                     const Estimate<Pose>& estimate,
-                                     std::span<const typename Pose::Matrix> covariances,
-                                     int threads) {
+                                     std::span<const Belief<Pose>> residuals, int threads) {
   const auto& reduced = odometry.reduced;
   std::vector<std::optional<SlipChange>> of_step(reduced.contracted);
   parallel_for_each(of_step.size(), threads, [&](std::size_t k) {
     const auto& step = reduced.steps[k];
-    const auto error = step_error<Pose>(step, estimate.residual(step), covariances[k], scale);
+    const auto error = step_error<Pose>(step, residuals[k], scale);
     of_step[k] = best_change(odometry, k, error, scale, log_odds);
   });
   return best_of_runs(of_step);
@@ -110,11 +108,9 @@ std::vector<SlipChange> slip_changes(const ContractedChain<Pose>& odometry, doub
 
 template std::vector<SlipChange> slip_changes(const ContractedChain<Pose2>&, double,
                                               const std::array<double, kSlipSizes>&,
-                                              const Estimate<Pose2>&,
-                                              std::span<const Pose2::Matrix>, int);
+                                              std::span<const Belief<Pose2>>, int);
 template std::vector<SlipChange> slip_changes(const ContractedChain<Pose3>&, double,
                                               const std::array<double, kSlipSizes>&,
-                                              const Estimate<Pose3>&,
-                                              std::span<const Pose3::Matrix>, int);
+                                              std::span<const Belief<Pose3>>, int);
 
 }  // namespace isotherm::slam::detail

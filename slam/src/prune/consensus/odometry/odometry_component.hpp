@@ -2,8 +2,7 @@
 
 #include <span>
 
-#include "prune/consensus/estimate/estimate.hpp"
-#include "prune/consensus/estimate/step_edges.hpp"
+#include "prune/consensus/odometry/step_edges.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -16,15 +15,13 @@ struct OdometryComponent {
   typename Pose::Tangent redundancy = Pose::Tangent::Zero();  ///< numbers left over
 };
 
-/// At the last update of `estimate`, where the factor on all of odometry's covariances was `scale`.
+/// By the residuals of its steps where the factor on all of odometry's covariances was `scale`.
 /// Many edges are contracted into a step, and an early one's error in heading is one in place at
 /// the step's end: each edge has the part of the step's error that its own covariance explains.
-/// `covariances` are those of the steps (Estimate::residual_covariances). O(edges), on `threads`
-/// threads (0: all cores).
+/// O(edges), on `threads` threads (0: all cores).
 template <class Pose>
 OdometryComponent<Pose> odometry_component(const ContractedChain<Pose>& odometry, double scale,
-                                           const Estimate<Pose>& estimate,
-                                           std::span<const typename Pose::Matrix> covariances,
+                                           std::span<const Belief<Pose>> residuals,
                                            int threads = 1);
 
 }  // namespace isotherm::slam::detail
