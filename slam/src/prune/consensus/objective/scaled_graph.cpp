@@ -103,8 +103,8 @@ double log_information(const std::vector<Link<Pose>>& links) {
 template <class Pose>
 ScaledGraph<Pose> scaled_graph(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
                                const Shapes<Pose>& shapes) {
-  if (!(shapes == Shapes<Pose>{}))
-    return scaled_graph(with_shapes(graph, roles, shapes), roles, {});
+  const bool as_stated = shapes == Shapes<Pose>{};
+  if (!as_stated) return scaled_graph(with_shapes(graph, roles, shapes), roles, {});
   ScaledGraph<Pose> scaled{.reduced = reduce(graph, roles)};
   scaled.by_bias = steps_by_bias(graph, roles, scaled.reduced);
   scaled.log_information = log_information(scaled.reduced.steps);

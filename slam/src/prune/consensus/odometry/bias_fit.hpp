@@ -28,7 +28,7 @@ class BiasFit {
   using Matrix = typename Pose::Matrix;
 
   /// At the last update of `estimate`, on `graph`, where the factor on odometry's covariances was
-  /// `scale`. All must outlive this object, but for `prior`, whose span must. O(steps).
+  /// `scale`. Both must outlive this object. O(steps).
   BiasFit(const Estimate<Pose>& estimate, const ReducedGraph<Pose>& graph,
           const BiasPrior<Pose>& prior, double scale);
 
