@@ -9,8 +9,9 @@
 
 namespace isotherm::slam::detail {
 
-/// What it takes for the bias of odometry: the derivatives of contracted steps by it, of which
-/// there may be fewer than steps, and its value and variance before anything was measured.
+/// What a fit of odometry's bias starts from: the derivatives of contracted steps by it, of which
+/// there may be fewer than steps, the value it is held at, and its variance before anything was
+/// measured.
 template <class Pose>
 struct BiasPrior {
   std::span<const ByBias<Pose>> by_bias;
