@@ -215,7 +215,7 @@ void OnlineEngine<Pose>::adopt(std::shared_ptr<Snapshot<Pose>> map) {
   outlook_.reset();
   map_ = std::move(map);
   if (map_->explained()) outlook_.emplace(log_, *map_, options_.consensus);
-  runs_ = OpenRuns(outlook_ ? outlook_->prior() : 0.0);
+  runs_ = OpenRuns(outlook_ ? outlook_->labels() : LabelCounts());
   standings_.clear();
   judge_since(seen);
 }

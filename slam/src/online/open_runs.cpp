@@ -47,10 +47,11 @@ std::vector<std::pair<Index, double>> OpenRuns::log_odds(Index edge) const {
   std::vector<Weights> upward(run.size());  // the same for the state of the one before it
   for (std::size_t k = run.size(); k-- > 0;) {
     const Node& node = nodes_[run[k]];
-    below[k].yes += prior_;
     if (node.parent == kNone) break;
-    upward[k] = {log_sum(below[k].no, below[k].yes + node.member.own),
-                 log_sum(below[k].no, below[k].yes + node.with_parent())};
+    upward[k] = {log_sum(labels_.log_next(false, false) + below[k].no,
+                         labels_.log_next(false, true) + below[k].yes + node.member.own),
+                 log_sum(labels_.log_next(true, false) + below[k].no,
+                         labels_.log_next(true, true) + below[k].yes + node.with_parent())};
     Weights& parent = below[static_cast<std::size_t>(place(node.parent))];
     parent.no += upward[k].no;
     parent.yes += upward[k].yes;
@@ -59,12 +60,17 @@ std::vector<std::pair<Index, double>> OpenRuns::log_odds(Index edge) const {
   std::vector<std::pair<Index, double>> odds;
   for (std::size_t k = 0; k < run.size(); ++k) {
     const Node& node = nodes_[run[k]];
-    all[k] = {below[k].no, below[k].yes + node.member.own};
-    if (node.parent != kNone) {
+    if (node.parent == kNone) {
+      all[k] = {labels_.log_share(LabelCounts::kFirst, false) + below[k].no,
+                labels_.log_share(LabelCounts::kFirst, true) + below[k].yes + node.member.own};
+    } else {
       const Weights& parent = all[static_cast<std::size_t>(place(node.parent))];
       const Weights rest{parent.no - upward[k].no, parent.yes - upward[k].yes};
-      all[k] = {below[k].no + log_sum(rest.no, rest.yes),
-                below[k].yes + log_sum(rest.no + node.member.own, rest.yes + node.with_parent())};
+      all[k] = {
+          below[k].no + log_sum(rest.no + labels_.log_next(false, false),
+                                rest.yes + labels_.log_next(true, false)),
+          below[k].yes + log_sum(rest.no + labels_.log_next(false, true) + node.member.own,
+                                 rest.yes + labels_.log_next(true, true) + node.with_parent())};
     }
     odds.emplace_back(node.member.edge, all[k].yes - all[k].no);
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "isotherm/slam/graph/pose_graph.hpp"
+#include "prune/consensus/runs/labels.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -13,7 +14,7 @@ namespace isotherm::slam::detail {
 /// prove nothing where odometry has drifted, all of them together do.
 ///
 /// Each loop is true or false. A true one adds to the evidence what the map makes of it or, where
-/// the loop before it in its run is true too, what that predicts, if it is more; and the prior.
+/// the loop before it in its run is true too, what that predicts, if it is more.
 /// Their odds are summed over all states of the run, which is a tree, by messages along it
 /// (Pearl, Probabilistic Reasoning in Intelligent Systems, 1988).
 class OpenRuns {
@@ -27,8 +28,8 @@ class OpenRuns {
     double with_before = 0.0;  ///< the same given that loop
   };
 
-  /// `prior` is the log odds of any loop being true.
-  explicit OpenRuns(double prior = 0.0) : prior_(prior) {}
+  /// What follows what as often as `labels` have it.
+  explicit OpenRuns(const LabelCounts& labels = {}) : labels_(labels) {}
 
   bool contains(Index edge) const { return positions_.contains(edge); }
 
@@ -47,7 +48,7 @@ class OpenRuns {
     double with_parent() const { return std::max(member.own, member.with_before); }
   };
 
-  double prior_;
+  LabelCounts labels_;
   std::vector<Node> nodes_;
   std::unordered_map<Index, Index> positions_;  // by edge
   std::vector<std::vector<Index>> runs_;        // positions, the one before always first

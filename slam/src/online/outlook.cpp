@@ -33,8 +33,7 @@ Outlook<Pose>::Outlook(const EdgeLog<Pose>& log, const Snapshot<Pose>& map,
       map_(map),
       window_(options.window),
       covariance_(map.assessment().estimate().factor()) {
-  const auto& standings = map.best().standings;
-  if (!standings.empty()) prior_ = standings.front().log_odds - standings.front().evidence;
+  prior_ = labels().log_odds(LabelCounts::kFirst);
 }
 
 // Back along the steps that came since, to a vertex of the map or one that is known from there.

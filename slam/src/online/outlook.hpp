@@ -29,8 +29,8 @@ class Outlook {
   /// where that is known better so than along odometry.
   void follow(Index edge);
 
-  /// The log odds of any loop being true.
-  double prior() const noexcept { return prior_; }
+  /// Of the loops of the snapshot.
+  const LabelCounts& labels() const noexcept { return map_.best().labels; }
 
   /// The loop before another in its run, and log of how much likelier true than false the other is
   /// where that is true.
@@ -90,7 +90,7 @@ class Outlook {
   const Snapshot<Pose>& map_;
   Index window_;
   spectral::BranchCovariance<Pose::kDof> covariance_;
-  double prior_ = 0.0;                                  // log odds of any loop being true
+  double prior_ = 0.0;                                  // log odds of the first of a run being true
   mutable std::unordered_map<VertexId, Place> places_;  // that were asked for
 };
 

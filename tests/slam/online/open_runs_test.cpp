@@ -16,7 +16,8 @@ namespace {
 using Member = OpenRuns::Member;
 
 // By going through all states.
-std::map<Index, double> log_odds_of_all(const std::vector<Member>& members, double prior) {
+std::map<Index, double> log_odds_of_all(const std::vector<Member>& members,
+                                        const LabelCounts& labels) {
   std::map<Index, double> yes;
   std::map<Index, double> no;
   for (unsigned state = 0; state < 1U << members.size(); ++state) {
@@ -24,10 +25,11 @@ std::map<Index, double> log_odds_of_all(const std::vector<Member>& members, doub
     double weight = 0.0;
     for (std::size_t k = 0; k < members.size(); ++k) {
       const auto& member = members[k];
-      is_true[member.edge] = (state >> k & 1U) != 0;
-      if (!is_true[member.edge]) continue;
-      const bool led = member.before != OpenRuns::kNone && is_true[member.before];
-      weight += prior + (led ? std::max(member.own, member.with_before) : member.own);
+      const bool is = is_true[member.edge] = (state >> k & 1U) != 0;
+      const bool first = member.before == OpenRuns::kNone;
+      const bool led = !first && is_true[member.before];
+      weight += first ? labels.log_share(LabelCounts::kFirst, is) : labels.log_next(led, is);
+      if (is) weight += led ? std::max(member.own, member.with_before) : member.own;
     }
     for (const auto& [edge, is] : is_true) (is ? yes : no)[edge] += std::exp(weight);
   }
@@ -38,8 +40,13 @@ std::map<Index, double> log_odds_of_all(const std::vector<Member>& members, doub
 TEST(OpenRuns, SumOverAllStates) {
   Random random(3);
   for (int trial = 0; trial < 50; ++trial) {
-    const double prior = random.uniform(-2.0, 2.0);
-    OpenRuns runs(prior);
+    LabelCounts labels;
+    for (int k = 0; k < 5; ++k) labels.add(LabelCounts::kFirst, random.uniform(0.0, 1.0));
+    for (int k = 0; k < 9; ++k) {
+      const double before = random.uniform(0.0, 1.0);
+      labels.add_next(before, random.uniform(0.0, 1.0));
+    }
+    OpenRuns runs(labels);
     std::vector<Member> members;
     for (Index k = 0; k < 8; ++k) {
       const bool starts = k == 0 || random.index(6) == 0;
@@ -47,7 +54,7 @@ TEST(OpenRuns, SumOverAllStates) {
       members.push_back({3 * k + 1, random.uniform(-6.0, 3.0), before, random.uniform(-3.0, 6.0)});
       runs.add(members.back());
     }
-    const auto expected = log_odds_of_all(members, prior);
+    const auto expected = log_odds_of_all(members, labels);
     for (const auto& member : members) {
       const auto odds = runs.log_odds(member.edge);
       EXPECT_TRUE(runs.contains(member.edge));

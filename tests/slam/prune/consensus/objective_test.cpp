@@ -11,6 +11,8 @@
 #include "isotherm/base/random.hpp"
 #include "prune/consensus/climb/climb.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
+#include "prune/consensus/objective/run_density.hpp"
+#include "prune/consensus/pairs/loop_pair.hpp"
 #include "slam/loop_graph.hpp"
 
 namespace isotherm::slam::detail {
@@ -136,6 +138,34 @@ TYPED_TEST(ObjectiveOf, RisesByWhatALoopGains) {
   const double prior = std::log(static_cast<double>(loops));
   EXPECT_NEAR(with - without, gain - objective.log_alternative(0, near, 1.0) + prior, 0.3)
       << "chance on the map with the loop, and on the one without";
+}
+
+// Where all loops err as most do that is normal, of its residual under the other.
+TYPED_TEST(ObjectiveOf, PredictsALoopByTheOneBeforeIt) {
+  using Pose = TypeParam;
+  Random random(12);
+  const auto made = random_loop_graph<Pose>(random, 30, 40, 1.0);
+  const auto roles = edge_roles(made.graph);
+  const Objective<Pose> objective(made.graph, roles, 20);
+  const auto& graph = objective.stated().reduced;
+  const CovarianceScale scale{2.0, 3.0};
+  const ScaleMixture as_most = expected_mixture(scale.loops, {{1e12, 0.0, 0.0}});
+  std::vector<bool> accepted(graph.loops.size(), false);
+  for (std::size_t k = 0; k < 20; ++k) accepted[k] = true;
+  const auto found = run_density(objective.runs(), graph, graph, scale, as_most, accepted);
+  const auto loops = forward_loops(graph, scale);
+  std::size_t led = 0;
+  for (std::size_t k = 0; k < loops.size(); ++k) {
+    const Index before = objective.runs().before(static_cast<Index>(k));
+    if (before == Runs<Pose>::kNone || (accepted[k] && accepted[before])) {
+      EXPECT_EQ(found[k], 0.0);
+      continue;
+    }
+    ++led;
+    const auto [r, S] = pair_residual(graph, scale, loops[before], loops[k]);
+    EXPECT_NEAR(found[k], log_normal<Pose>(r, S), 1e-6 * std::abs(found[k])) << k;
+  }
+  EXPECT_GT(led, 5u);
 }
 
 // Without cycles the information of odometry is the determinant of the normal equations.

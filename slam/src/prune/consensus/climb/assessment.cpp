@@ -9,6 +9,7 @@
 #include "isotherm/base/random.hpp"
 #include "prune/consensus/constants.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
+#include "prune/consensus/objective/run_density.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -77,6 +78,8 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   if (pace_) pace_(kCovarianceWork * estimate_.work());
   now.evidence = fit + objective_.log_scale_peak(now);
   if (now.evidence < least) return false;
+  found_.run_density = run_density(objective_.runs(), graph(), objective_.stated().reduced,
+                                   now.scale, found_.mixture, now.accepted, threads_);
   weigh(now);
   return true;
 }
@@ -347,19 +350,45 @@ Standing Assessment<Pose>::other_standing(const Explanation<Pose>& now, Index lo
   return standing;
 }
 
-// Of the share of true loops as expected, of which nothing is known before (Beta).
+// By how labels follow each other, as expected.
 template <class Pose>
 void Assessment<Pose>::add_prior(Explanation<Pose>& now) const {
   auto& standings = now.standings;
-  double prior = 0.0;
+  std::vector<double> is_true(standings.size(), 1.0);
+  now.labels = {};
   for (int step = 0; step < kFixedPointSteps; ++step) {
-    double kept = 1.0;
     for (std::size_t k = 0; k < standings.size(); ++k) {
-      kept += now.accepted[k] ? 1.0 : probability_of(standings[k].evidence + prior);
+      const auto loop = static_cast<Index>(k);
+      standings[k].log_odds = standings[k].evidence + log_prior_odds(now, std::span(&loop, 1));
+      if (!now.accepted[k]) is_true[k] = probability_of(standings[k].log_odds);
     }
-    prior = std::log(kept / (2.0 + static_cast<double>(standings.size()) - kept));
+    now.labels = objective_.runs().labels(is_true);
   }
-  for (auto& standing : standings) standing.log_odds = standing.evidence + prior;
+}
+
+template <class Pose>
+double Assessment<Pose>::log_prior_odds(const Explanation<Pose>& now,
+                                        std::span<const Index> loops) const {
+  const auto& runs = objective_.runs();
+  const auto is_one = [&loops](Index k) { return std::ranges::binary_search(loops, k); };
+  const auto next_odds = [&](bool before_if_true, bool if_true, bool before, bool is) {
+    return now.labels.log_next(before_if_true, if_true) - now.labels.log_next(before, is);
+  };
+  double odds = 0.0;
+  for (const Index k : loops) {
+    const Index leader = runs.leader(k);
+    if (leader == Runs<Pose>::kNone) {
+      odds += now.labels.log_odds(runs.alone(k));
+    } else if (is_one(leader)) {
+      odds += next_odds(true, true, false, false);
+    } else {
+      odds += next_odds(now.accepted[leader], true, now.accepted[leader], false);
+    }
+    for (const Index next : runs.followers(k)) {
+      if (!is_one(next)) odds += next_odds(true, now.accepted[next], false, now.accepted[next]);
+    }
+  }
+  return odds;
 }
 
 template class Assessment<Pose2>;

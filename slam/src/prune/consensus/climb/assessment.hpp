@@ -3,6 +3,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "prune/consensus/objective/loop_gain.hpp"
@@ -59,6 +60,7 @@ class Assessment {
     // Information of the loops that the covariances are given; none where empty.
     std::vector<Matrix> held;
     std::shared_ptr<const std::vector<Belief<Pose>>> steps;  // of odometry's residuals, if any
+    std::vector<double> run_density;                         // run_density()
   };
   const Findings& findings() const noexcept { return found_; }
 
@@ -93,10 +95,17 @@ class Assessment {
   /// diag(I - Omega P), Omega its mean information, P the residual's covariance.
   typename Pose::Tangent redundancy(const Explanation<Pose>& now, Index loop) const;
 
+  /// log of how much likelier it is before anything is measured that these loops, ascending, are
+  /// all true than that all are false, if the others are as in `now`.
+  double log_prior_odds(const Explanation<Pose>& now, std::span<const Index> loops) const;
+
   /// log of the density that a loop's is held against.
   double log_alternative(Index loop) const {
     return objective_.log_alternative(loop, found_.near, found_.mixture.scale);
   }
+
+  /// log of how much likelier true than false a loop is if the one before it in its run is true.
+  double log_led(Index loop) const { return found_.run_density[loop] - log_alternative(loop); }
 
  private:
   void rescale(const Shapes<Pose>& shapes);

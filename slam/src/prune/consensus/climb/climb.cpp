@@ -244,7 +244,6 @@ void Climb<Pose>::begin() {
   learnt_from_ = drawn_from_ = 0;
   failed_ = {};
   assessment_.assess(now_);
-  predict_runs();
   best_ = now_;
 }
 
@@ -439,8 +438,7 @@ std::vector<bool> Climb<Pose>::open() const {
 
 template <class Pose>
 std::vector<Group> Climb<Pose>::groups(const std::vector<bool>& among) const {
-  return groups_of(objective_.runs(), among, now_.standings, run_density_,
-                   [&](Index k) { return assessment_.log_alternative(k); });
+  return groups_of(assessment_, now_, among);
 }
 
 template <class Pose>
@@ -502,8 +500,10 @@ bool Climb<Pose>::try_best_slips(double least) {
   std::ranges::sort(changes, std::greater{}, &SlipChange::gain);
   std::size_t count = 0;
   while (count < changes.size() && changes[count].gain >= 0.5 * changes.front().gain) ++count;
-  const std::span all(changes);
-  return count > 0 && (try_slips(all.first(count)) || (count > 1 && try_slips(all.first(1))));
+  const auto try_first = [&](std::size_t some) {
+    return try_with([&](auto&) { slip(std::span(changes).first(some)); });
+  };
+  return count > 0 && (try_first(count) || (count > 1 && try_first(1)));
 }
 
 // Until none gains, before loops are accepted that a slip too many leaves room for.
@@ -571,7 +571,8 @@ bool Climb<Pose>::slip_for(const Selection& loops, bool accepted) {
     std::fill(dropped_.begin(), dropped_.end(), false);
     take_as(loops, accepted);
     assess();
-    if (accepted && !try_best_slips(0.0)) return false;
+    const auto& first = assessment_.graph().loops[loops.front()];
+    if (accepted && !try_best_slips(0.0) && !slip_elsewhere(first)) return false;
     Explanation<Pose> best = now_;
     while (now_.evidence <= least && (try_best_slips(0.0) || shift())) {
       const bool still = now_.accepted[loops.front()] == accepted;
@@ -581,6 +582,23 @@ bool Climb<Pose>::slip_for(const Selection& loops, bool accepted) {
     doubted_.push_back(std::move(best));
     return false;
   });
+}
+
+// Whether another edge explains better what is next to a loop than the one that slips nearest to
+// one of its ends does.
+template <class Pose>
+bool Climb<Pose>::slip_elsewhere(const Link<Pose>& loop) {
+  const double least = now_.evidence + kBetter;
+  for (const Index end : {loop.a, loop.b}) {
+    const auto edge = nearest_slip(now_.shapes.slips, assessment_.graph().vertex[end]);
+    const bool better = edge && all_or_nothing([&] {
+                          slip(std::array{SlipChange{.vertex = *edge, .slip = 0}});
+                          assess();
+                          return try_best_slips(0.0) && now_.evidence > least;
+                        });
+    if (better) return true;
+  }
+  return false;
 }
 
 // The likeliest first: they may be refuted each alone, and tell a slip together.
@@ -616,15 +634,13 @@ std::vector<typename Climb<Pose>::Selection> Climb<Pose>::strays() const {
 }
 
 template <class Pose>
-bool Climb<Pose>::try_slips(std::span<const SlipChange> changes) {
-  return try_with([&](auto& now) {
-    Slips& changed = now.shapes.slips;
-    changed.resize(objective_.odometry_edges());
-    for (const SlipChange& change : changes) {
-      changed[static_cast<std::size_t>(change.vertex)] = change.slip;
-    }
-    if (!any_slips(changed)) changed.clear();
-  });
+void Climb<Pose>::slip(std::span<const SlipChange> changes) {
+  Slips& changed = now_.shapes.slips;
+  changed.resize(objective_.odometry_edges());
+  for (const SlipChange& change : changes) {
+    changed[static_cast<std::size_t>(change.vertex)] = change.slip;
+  }
+  if (!any_slips(changed)) changed.clear();
 }
 
 // Whether the moves succeed, or else nothing changes. Scales at which the normal equations break
@@ -646,27 +662,19 @@ bool Climb<Pose>::all_or_nothing(const std::function<bool()>& moves) {
 template <class Pose>
 bool Climb<Pose>::try_with(const Change& change, const TrialTerms<Pose>& terms) {
   const double least = now_.evidence + terms.gain;
-  const bool better = all_or_nothing([&] {
+  return all_or_nothing([&] {
     change(now_);
     if (terms.from) assessment_.stand_on(*terms.from);
     if (terms.learning) assessment_.forget_nearness();
     return terms.learning ? assess() && outdoes(least) : assess(least);
   });
-  if (better) predict_runs();
-  return better;
 }
 
 template <class Pose>
 void Climb<Pose>::go_back(const Place& place) {
   now_ = place.now;
   assessment_.restore(now_, place.found);
-  run_density_ = place.run_density;
   failed_ = place.failed;
-}
-
-template <class Pose>
-void Climb<Pose>::predict_runs() {
-  run_density_ = objective_.runs().log_density(assessment_.graph(), now_.scale, run_.threads);
 }
 
 template <class Pose>

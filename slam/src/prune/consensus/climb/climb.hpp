@@ -110,7 +110,6 @@ class Climb {
   struct Place {
     Explanation<Pose> now;
     typename Assessment<Pose>::Findings found;
-    std::vector<double> run_density;
     std::array<bool, trials> failed;
   };
 
@@ -154,9 +153,10 @@ class Climb {
   bool slip_as_if_accurate();
   bool slip_for_any(const std::vector<Selection>& all, bool accepted);
   bool slip_for(const Selection& loops, bool accepted);
+  bool slip_elsewhere(const Link<Pose>& loop);
   std::vector<Selection> rejected_runs() const;
   std::vector<Selection> strays() const;
-  bool try_slips(std::span<const SlipChange> changes);
+  void slip(std::span<const SlipChange> changes);
   bool once(Trial trial, const std::function<bool()>& move);
   bool weigh_anew();
   bool weigh_by_others();
@@ -166,9 +166,8 @@ class Climb {
   void draw_anew();
   bool all_or_nothing(const std::function<bool()>& moves);
   bool try_with(const Change& change, const TrialTerms<Pose>& terms = {});
-  Place place() const { return {now_, assessment_.findings(), run_density_, failed_}; }
+  Place place() const { return {now_, assessment_.findings(), failed_}; }
   void go_back(const Place& place);
-  void predict_runs();
   void note(std::size_t accepted, std::size_t dropped);
   void tell_progress() const;
 
@@ -181,8 +180,7 @@ class Climb {
   Explanation<Pose> best_;
   std::optional<Explanation<Pose>> nothing_;
   double nothing_below_ = std::numeric_limits<double>::infinity();  // its evidence, where not known
-  std::vector<double> run_density_;       // log p(z | the loop before in its run)
-  std::vector<Explanation<Pose>> peaks_;  // of earlier climbs
+  std::vector<Explanation<Pose>> peaks_;                            // of earlier climbs
   std::vector<Explanation<Pose>> doubted_;
   std::vector<Passed> passed_;
   std::vector<bool> dropped_;          // since the climb last rose; not tried again

@@ -19,22 +19,23 @@ std::vector<Index> each_by_itself(std::size_t count) {
 }
 
 template <class Pose>
-std::vector<std::vector<Index>> runs_of(const Runs<Pose>& runs, const std::vector<bool>& open,
-                                        const std::vector<double>& run_density,
-                                        const std::function<double(Index)>& alternative) {
-  std::vector<Index> parent = each_by_itself(open.size());
-  for (std::size_t k = 0; k < open.size(); ++k) {
+std::vector<std::vector<Index>> runs_of(const Assessment<Pose>& assessment,
+                                        const Explanation<Pose>& now,
+                                        const std::vector<bool>& among) {
+  const auto& runs = assessment.objective().runs();
+  std::vector<Index> parent = each_by_itself(among.size());
+  for (std::size_t k = 0; k < among.size(); ++k) {
     const auto loop = static_cast<Index>(k);
     const Index before = runs.before(loop);
-    if (before == Runs<Pose>::kNone || !open[k] || !open[before]) continue;
-    if (run_density[k] > alternative(loop)) {
+    if (before == Runs<Pose>::kNone || !among[k] || !among[before]) continue;
+    if (now.accepted[k] || assessment.log_led(loop) > 0.0) {
       parent[find_root(parent, loop)] = find_root(parent, before);
     }
   }
-  std::vector<std::vector<Index>> groups(open.size());
-  for (std::size_t k = 0; k < open.size(); ++k) {
+  std::vector<std::vector<Index>> groups(among.size());
+  for (std::size_t k = 0; k < among.size(); ++k) {
     const auto loop = static_cast<Index>(k);
-    if (open[k]) groups[find_root(parent, loop)].push_back(loop);
+    if (among[k]) groups[find_root(parent, loop)].push_back(loop);
   }
   std::erase_if(groups, [](const auto& group) { return group.empty(); });
   return groups;
@@ -52,25 +53,23 @@ std::vector<Index> numbered_parts(const std::vector<Group>& groups) {
 }  // namespace
 
 template <class Pose>
-std::vector<Group> groups_of(const Runs<Pose>& runs, const std::vector<bool>& open,
-                             const std::vector<Standing>& standings,
-                             const std::vector<double>& run_density,
-                             const std::function<double(Index)>& alternative) {
+std::vector<Group> groups_of(const Assessment<Pose>& assessment, const Explanation<Pose>& now,
+                             const std::vector<bool>& among) {
+  const auto& runs = assessment.objective().runs();
+  const auto& standings = now.standings;
   std::vector<Group> groups;
-  for (auto& loops : runs_of(runs, open, run_density, alternative)) {
+  for (auto& loops : runs_of(assessment, now, among)) {
     const Index seed =
         *std::ranges::max_element(loops, {}, [&](Index k) { return standings[k].evidence; });
-    double evidence = 0.0;
+    double gain = assessment.log_prior_odds(now, loops);
     for (const Index k : loops) {
-      double own = standings[k].evidence;
       const Index before = runs.before(k);
-      if (k != seed && before != Runs<Pose>::kNone && std::ranges::binary_search(loops, before)) {
-        own = std::max(own, run_density[k] - alternative(k));
-      }
-      evidence += own;
+      const bool led =
+          k != seed && before != Runs<Pose>::kNone && std::ranges::binary_search(loops, before);
+      const double own = standings[k].evidence;
+      gain += led ? std::max(own, assessment.log_led(k)) : own;
     }
-    const double prior = standings[seed].log_odds - standings[seed].evidence;
-    groups.push_back({std::move(loops), prior + evidence, standings[seed].parts});
+    groups.push_back({std::move(loops), gain, standings[seed].parts});
   }
   return groups;
 }
@@ -97,11 +96,9 @@ Group most_certain(std::vector<Group> groups, std::size_t accepted) {
   return all;
 }
 
-template std::vector<Group> groups_of(const Runs<Pose2>&, const std::vector<bool>&,
-                                      const std::vector<Standing>&, const std::vector<double>&,
-                                      const std::function<double(Index)>&);
-template std::vector<Group> groups_of(const Runs<Pose3>&, const std::vector<bool>&,
-                                      const std::vector<Standing>&, const std::vector<double>&,
-                                      const std::function<double(Index)>&);
+template std::vector<Group> groups_of(const Assessment<Pose2>&, const Explanation<Pose2>&,
+                                      const std::vector<bool>&);
+template std::vector<Group> groups_of(const Assessment<Pose3>&, const Explanation<Pose3>&,
+                                      const std::vector<bool>&);
 
 }  // namespace isotherm::slam::detail

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <functional>
 #include <utility>
 #include <vector>
 
-#include "prune/consensus/objective/runs.hpp"
-#include "prune/consensus/objective/standing.hpp"
+#include "prune/consensus/climb/assessment.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -16,15 +14,12 @@ struct Group {
   std::pair<Index, Index> parts;  ///< of the map that its first loop joins
 };
 
-/// The `open` loops in groups of those that the loop before in their run predicts better than
-/// chance does (its log density in `run_density`, that of chance from `alternative`). Of a group
-/// the member that the map predicts best comes first; each other one counts by what predicts it
-/// better, the map or the loop before.
+/// Loops in groups of those that the loop before in their run predicts better than chance does: of
+/// `among`, all of which are accepted, or none is. Of a group the member that the map predicts best
+/// comes first; each other one counts by what predicts it better, the map or the loop before.
 template <class Pose>
-std::vector<Group> groups_of(const Runs<Pose>& runs, const std::vector<bool>& open,
-                             const std::vector<Standing>& standings,
-                             const std::vector<double>& run_density,
-                             const std::function<double(Index)>& alternative);
+std::vector<Group> groups_of(const Assessment<Pose>& assessment, const Explanation<Pose>& now,
+                             const std::vector<bool>& among);
 
 /// The groups that gain most as one, as many as are likely all true and not many more than
 /// `accepted`, those in force; of groups that nothing connects to the map those that join

@@ -36,6 +36,9 @@ struct ReducedGraph {
   Index node_count() const noexcept { return static_cast<Index>(vertex.size()); }
   bool same_chain(const Link<Pose>& loop) const { return chain[loop.a] == chain[loop.b]; }
 
+  /// Whether it is told from the earlier vertex.
+  bool is_forward(const Link<Pose>& loop) const { return vertex[loop.a] <= vertex[loop.b]; }
+
   /// Covariance of T_a^-1 T_b under odometry alone, as a perturbation on the right; beyond every
   /// map where the ends are on different chains.
   typename Pose::Matrix odometry_covariance(const Link<Pose>& loop) const;

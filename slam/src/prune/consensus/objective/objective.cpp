@@ -16,15 +16,6 @@ namespace {
 // Steps that vary less, in times of what the file says that they err by, are commands or rounded.
 constexpr double kLeastSpread = 1e-6;
 
-// Log probability that just certain `kept` of `all` loops are true, of a share that may be any
-// (Beta-binomial).
-double log_prior(std::size_t kept, std::size_t all) {
-  const auto log_factorial = [](std::size_t n) {
-    return std::lgamma(static_cast<double>(n) + 1.0);
-  };
-  return log_factorial(kept) + log_factorial(all - kept) - log_factorial(all + 1);
-}
-
 template <class Pose>
 typename Pose::Tangent most_scales(const StepSpread& spread) {
   const auto most = [](double part) {
@@ -91,8 +82,7 @@ template <class Pose>
 double Objective<Pose>::log_nearer(Index loop, const typename Pose::Tangent& r) const {
   if (runs_.copied(loop)) return 0.0;
   const auto& link = stated_.reduced.loops[loop];
-  const bool forward = stated_.reduced.vertex[link.a] <= stated_.reduced.vertex[link.b];
-  return near_.log_nearer(link.T_a_b, r, forward);
+  return near_.log_nearer(link.T_a_b, r, stated_.reduced.is_forward(link));
 }
 
 // Log densities of the accepted loops at the peak, and of their scales; how near they are.
@@ -118,11 +108,9 @@ double Objective<Pose>::fit(const Explanation<Pose>& explanation, const ScaledGr
                             const Estimate<Pose>& estimate, const NearByClass& near) const {
   const CovarianceScale& scale = explanation.scale;
   double alternatives = 0.0;
-  std::size_t kept = 0;
   for (std::size_t k = 0; k < explanation.accepted.size(); ++k) {
     if (!explanation.accepted[k]) continue;
     alternatives += log_alternative(static_cast<Index>(k), near, scale.loops);
-    ++kept;
   }
   const auto steps = static_cast<double>(graph.reduced.steps.size());
   const double log_information =
@@ -131,7 +119,7 @@ double Objective<Pose>::fit(const Explanation<Pose>& explanation, const ScaledGr
   return loops_fit(explanation, graph, estimate) - 0.5 * estimate.odometry_cost() / scale.odometry -
          0.5 * (estimate.log_determinant() - log_information) +
          joined * (0.5 * Pose::kDof * kLog2Pi - log_volume_) - alternatives +
-         log_prior(kept, explanation.accepted.size());
+         runs_.labels(explanation.accepted).log_evidence();
 }
 
 template <class Pose>

@@ -9,13 +9,14 @@
 #include "prune/consensus/estimate/estimate.hpp"
 #include "prune/consensus/objective/error_scales.hpp"
 #include "prune/consensus/objective/near_density.hpp"
-#include "prune/consensus/objective/runs.hpp"
 #include "prune/consensus/objective/scale_prior.hpp"
 #include "prune/consensus/objective/scaled_graph.hpp"
 #include "prune/consensus/objective/standing.hpp"
 #include "prune/consensus/odometry/bias_fit.hpp"
 #include "prune/consensus/odometry/odometry_component.hpp"
 #include "prune/consensus/odometry/slip_changes.hpp"
+#include "prune/consensus/runs/labels.hpp"
+#include "prune/consensus/runs/runs.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -41,6 +42,7 @@ struct Explanation {
   typename Pose::Tangent odometry_cost = Pose::Tangent::Zero();  ///< OdometryComponent::cost
   typename Estimate<Pose>::Layout layout;
   std::vector<Standing> standings;  ///< of each loop, given all others
+  LabelCounts labels;               ///< of loops that are true and false, as expected
   double evidence = 0.0;            ///< see Objective
 
   std::size_t accepted_count() const {

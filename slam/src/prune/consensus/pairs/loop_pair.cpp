@@ -39,15 +39,22 @@ bool measure_the_same(const Pose& a, const Pose& b) {
 }
 
 template <class Pose>
-PairResidual<Pose> pair_residual(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
-                                 const ForwardLoop<Pose>& known,
-                                 const ForwardLoop<Pose>& measured) {
+Belief<Pose> pair_belief(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
+                         const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured) {
   const auto before = along(graph, scale, measured.from, known.from);
   const auto after = along(graph, scale, known.to, measured.to);
   const auto predicted = compose(compose(before, known.measured), after);
   const typename Pose::Tangent r = measured.measured.T.between(predicted.T).log();
   const typename Pose::Matrix j = residual_jacobian<Pose>(r);
-  return {r, measured.measured.covariance + j * predicted.covariance * j.transpose()};
+  return {r, j * predicted.covariance * j.transpose()};
+}
+
+template <class Pose>
+PairResidual<Pose> pair_residual(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
+                                 const ForwardLoop<Pose>& known,
+                                 const ForwardLoop<Pose>& measured) {
+  const auto [r, P] = pair_belief(graph, scale, known, measured);
+  return {r, measured.measured.covariance + P};
 }
 
 template std::vector<ForwardLoop<Pose2>> forward_loops(const ReducedGraph<Pose2>&,
@@ -56,6 +63,10 @@ template std::vector<ForwardLoop<Pose3>> forward_loops(const ReducedGraph<Pose3>
                                                        const CovarianceScale&);
 template bool measure_the_same(const Pose2&, const Pose2&);
 template bool measure_the_same(const Pose3&, const Pose3&);
+template Belief<Pose2> pair_belief(const ReducedGraph<Pose2>&, const CovarianceScale&,
+                                   const ForwardLoop<Pose2>&, const ForwardLoop<Pose2>&);
+template Belief<Pose3> pair_belief(const ReducedGraph<Pose3>&, const CovarianceScale&,
+                                   const ForwardLoop<Pose3>&, const ForwardLoop<Pose3>&);
 template PairResidual<Pose2> pair_residual(const ReducedGraph<Pose2>&, const CovarianceScale&,
                                            const ForwardLoop<Pose2>&, const ForwardLoop<Pose2>&);
 template PairResidual<Pose3> pair_residual(const ReducedGraph<Pose3>&, const CovarianceScale&,

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "prune/consensus/estimate/belief.hpp"
 #include "prune/consensus/estimate/estimate.hpp"
 #include "prune/consensus/estimate/reduced_graph.hpp"
 
@@ -32,6 +33,13 @@ bool is_copy(const Link<Pose>& a, const Link<Pose>& b) {
   return measure_the_same(a.T_a_b, b.T_a_b);
 }
 
+/// What `known` and the two pieces of odometry between their ends say of the residual of
+/// `measured`. That does not depend on the estimate, nor on how far odometry has drifted between the
+/// two ends of the loops. Both must run between the same chains.
+template <class Pose>
+Belief<Pose> pair_belief(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
+                         const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured);
+
 /// A loop's residual under another one, and its covariance.
 template <class Pose>
 struct PairResidual {
@@ -39,10 +47,7 @@ struct PairResidual {
   typename Pose::Matrix S;
 };
 
-/// The residual of `measured` under what `known` and the two pieces of odometry between
-/// their ends predict. The prediction does not depend on the estimate, nor on how far
-/// odometry has drifted between the two ends of the loops. Both must run between the
-/// same chains.
+/// With the error of `measured`, too.
 template <class Pose>
 PairResidual<Pose> pair_residual(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
                                  const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured);

@@ -1,12 +1,10 @@
-#include "prune/consensus/objective/runs.hpp"
+#include "prune/consensus/runs/runs.hpp"
 
 #include <cstdlib>
 #include <limits>
 #include <tuple>
 #include <utility>
 
-#include "isotherm/base/parallel.hpp"
-#include "prune/consensus/estimate/log_normal.hpp"
 #include "prune/consensus/pairs/loop_pair.hpp"
 #include "prune/consensus/pairs/near_pairs.hpp"
 
@@ -29,19 +27,11 @@ Runs<Pose>::Runs(const ReducedGraph<Pose>& graph, Index window)
     before_[second] = first;
     copied_[second] = is_copy(graph.loops[first], graph.loops[second]);
   }
-}
-
-template <class Pose>
-std::vector<double> Runs<Pose>::log_density(const ReducedGraph<Pose>& graph,
-                                            const CovarianceScale& scale, int threads) const {
-  const auto loops = forward_loops(graph, scale);
-  std::vector<double> densities(loops.size(), 0.0);
-  parallel_for_each(loops.size(), threads, [&](std::size_t k) {
-    if (before_[k] == kNone) return;
-    const auto [r, S] = pair_residual(graph, scale, loops[before_[k]], loops[k]);
-    densities[k] = log_normal<Pose>(r, S);
-  });
-  return densities;
+  followers_.resize(loops.size());
+  for (std::size_t k = 0; k < loops.size(); ++k) {
+    const Index led_by = leader(static_cast<Index>(k));
+    if (led_by != kNone) followers_[led_by].push_back(static_cast<Index>(k));
+  }
 }
 
 template class Runs<Pose2>;
