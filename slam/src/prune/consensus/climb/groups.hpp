@@ -10,7 +10,7 @@ namespace isotherm::slam::detail {
 /// Loops that are accepted together, and by how much that raises the evidence.
 struct Group {
   std::vector<Index> loops;       ///< ascending
-  double gain = 0.0;              ///< evidence, and the log odds of any loop being true
+  double gain = 0.0;              ///< with the log odds of their labels
   std::pair<Index, Index> parts;  ///< of the map that its first loop joins
 };
 

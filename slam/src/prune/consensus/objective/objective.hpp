@@ -73,12 +73,11 @@ const Explanation<Pose>& best_of(const std::vector<Explanation<Pose>>& found) {
 ///
 /// with p by Laplace's approximation from the factor that the estimate holds, without what does not
 /// depend on A and the scales (of odometry without cycles that is all of its own: p is that of z_A
-/// given odometry), f_mean, f(z) and f(h) as in NearDensity, pi(A) the Beta-binomial of a fraction
-/// of which nothing is known. The scales are log-normal around what the file states
-/// (scale_prior.hpp) and integrated over by Laplace's approximation. Which loops are as accurate as
-/// most and which less (ScaleShares) is integrated out by variational Bayes (Bishop, Pattern
-/// Recognition and Machine Learning, 10.1), which gives a lower bound. A part that A joins to
-/// another lies anywhere on the map.
+/// given odometry), f_mean, f(z) and f(h) as in NearDensity, pi(A) as in LabelCounts. The scales
+/// are log-normal around what the file states (scale_prior.hpp) and integrated over by Laplace's
+/// approximation. Which loops are as accurate as most and which less (ScaleShares) is integrated
+/// out by variational Bayes (Bishop, Pattern Recognition and Machine Learning, 10.1), which gives a
+/// lower bound. A part that A joins to another lies anywhere on the map.
 ///
 /// The same number is what accepting the loops one by one adds (loop_gain), in any order.
 template <class Pose>
