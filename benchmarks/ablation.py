@@ -64,6 +64,8 @@ MOVES = {
          "::bias_prior(const Explanation<Pose>& explanation,\n" + 44 * " " +
          "const ScaledGraph<Pose>& graph) const {\n",
          "if ({off}) return {{{{}}, TurnBias<Pose>::Zero(), TurnBias<Pose>::Zero()}};"),
+    "labels in runs":
+        ("runs/runs.hpp", "Index leader(Index loop) const {", " if ({off}) return kNone;"),
     "slips of odometry": (CLIMB, "::find_slips() {\n", "if ({off}) return false;"),
     "coordinates leveled beside slips":
         (CLIMB, "::level_odometry() {\n", "if ({off}) return false;"),
@@ -104,6 +106,8 @@ def instrument(tree):
               "namespace isotherm::slam::detail {\ninline bool is_off(int move) {\n"
               f'  const char* off = std::getenv("{PREFIX}kMoves");\n'
               "  return off && std::atoi(off) == move;\n}\n")])
+    replace(room / "runs/runs.hpp",
+            [("#pragma once\n", '#pragma once\n#include "prune/consensus/constants.hpp"\n')])
     for k, (source, behind, left_out) in enumerate(MOVES.values()):
         text = behind + left_out.format(off=f"is_off({k})") + "\n"
         replace(room / source, [(behind, text)])

@@ -126,8 +126,7 @@ std::vector<Pose> odometry_poses(const PoseGraph<Pose>& graph, const EdgeRoles& 
       if (!graph.poses.empty()) poses[v] = graph.poses[v];
       continue;
     }
-    const auto& step = graph.constraints[*edges[v - 1]];
-    poses[v] = poses[v - 1] * (step.from < step.to ? step.T_from_to : step.T_from_to.inverse());
+    poses[v] = poses[v - 1] * forward_motion(graph.constraints[*edges[v - 1]]);
   }
   return poses;
 }

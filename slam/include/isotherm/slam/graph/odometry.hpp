@@ -28,6 +28,12 @@ UncertainPose<Pose> inverse(const UncertainPose<Pose>& pose);
 template <class Pose>
 std::vector<std::optional<Index>> chain_edges(const PoseGraph<Pose>& graph, const EdgeRoles& roles);
 
+/// What such an edge says of the motion from its earlier vertex to the later one.
+template <class Pose>
+Pose forward_motion(const Constraint<Pose>& edge) {
+  return edge.from < edge.to ? edge.T_from_to : edge.T_from_to.inverse();
+}
+
 /// Relative poses along odometry, with covariance, in O(log n) each.
 ///
 /// The composition of every block of 16, 32, 64, ... steps is kept, and a query

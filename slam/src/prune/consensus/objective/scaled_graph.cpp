@@ -31,19 +31,13 @@ void apply(const Slips& slips, const std::vector<std::optional<Index>>& edges,
   }
 }
 
-// From a vertex to the next.
-template <class Pose>
-Pose motion(const Constraint<Pose>& edge) {
-  return edge.from < edge.to ? edge.T_from_to : edge.T_from_to.inverse();
-}
-
 template <class Pose>
 void turn(const TurnBias<Pose>& bias, const std::vector<std::optional<Index>>& edges,
           PoseGraph<Pose>& graph) {
   for (const auto& edge : edges) {
     if (!edge) continue;
     auto& told = graph.constraints[*edge];
-    const Pose T = turned(motion(told), bias);
+    const Pose T = turned(forward_motion(told), bias);
     told.T_from_to = told.from < told.to ? T : T.inverse();
   }
 }
@@ -82,7 +76,7 @@ std::vector<ByBias<Pose>> steps_by_bias(const PoseGraph<Pose>& graph, const Edge
   for (const auto& step : std::span(reduced.steps).first(reduced.contracted)) {
     ByBias<Pose> by = ByBias<Pose>::Zero();
     for (Index v = reduced.vertex[step.a]; v < reduced.vertex[step.b]; ++v) {
-      by = by_bias_after<Pose>(by, motion(graph.constraints[*chain[v]]));
+      by = by_bias_after<Pose>(by, forward_motion(graph.constraints[*chain[v]]));
     }
     steps.push_back(by);
   }

@@ -11,8 +11,7 @@ Chain<Pose> chain_of(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
     auto& next = chain.emplace_back();
     if (!edge) continue;
     const auto& told = graph.constraints[*edge];
-    const bool forward = told.from < told.to;
-    next = {forward ? told.T_from_to : told.T_from_to.inverse(), forward,
+    next = {forward_motion(told), told.from < told.to,
             covariance_from_information<Pose::kDof>(told.information)};
   }
   return chain;
