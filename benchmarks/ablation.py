@@ -48,14 +48,16 @@ CONSTANTS = [
 ]
 # Of each move the place in a source behind which it is left out, and how.
 CLIMB = "climb/climb.cpp"
-TRIALS = "::slip_for_any(const std::vector<Selection>& all, bool accepted) {\n"
+POSITION = "climb/position.cpp"
+SLIPS = "climb/slip_trials.cpp"
+TRIALS = "::for_any(const std::vector<Selection>& all, bool accepted) {\n"
 MOVES = {
     "lessons of the common scales alone":
-        (CLIMB, "    if (failed_[trial]) continue;\n",
+        (POSITION, "    if (failed_[trial]) continue;\n",
          "if (trial == Trial::lesson_of_scales && {off}) continue;"),
     "most loops called wider or sharper":
         ("climb/learn.cpp", "sharper_most(shares)}) {\n", "if (start.factor != 1.0 && {off}) continue;"),
-    "far starts": ("climb/search.cpp", ": std::span(kStarts).subspan(kStartsAlways)) {\n",
+    "far starts": ("search/search.cpp", ": std::span(kStarts).subspan(kStartsAlways)) {\n",
                    "if ({off}) break;"),
     "loops weighed by the others": (CLIMB, "::weigh_by_others() {\n", "if ({off}) return false;"),
     "the look afar": (CLIMB, "::weigh_afar() {\n", "if ({off}) return false;"),
@@ -66,14 +68,14 @@ MOVES = {
          "if ({off}) return {{{{}}, TurnBias<Pose>::Zero(), TurnBias<Pose>::Zero()}};"),
     "labels in runs":
         ("runs/runs.hpp", "Index leader(Index loop) const {", " if ({off}) return kNone;"),
-    "slips of odometry": (CLIMB, "::find_slips() {\n", "if ({off}) return false;"),
+    "slips of odometry": (POSITION, "::find_slips() {\n", "if ({off}) return false;"),
     "coordinates leveled beside slips":
-        (CLIMB, "::level_odometry() {\n", "if ({off}) return false;"),
-    "slips for rejected runs": (CLIMB, TRIALS, "if (accepted && {off}) return false;"),
+        (POSITION, "::level_odometry() {\n", "if ({off}) return false;"),
+    "slips for rejected runs": (SLIPS, TRIALS, "if (accepted && {off}) return false;"),
     "slips without a loop that tells one alone":
-        (CLIMB, TRIALS, "if (!accepted && {off}) return false;"),
+        (SLIPS, TRIALS, "if (!accepted && {off}) return false;"),
     "slips as if loops were accurate":
-        (CLIMB, "::slip_as_if_accurate() {\n", "if ({off}) return false;"),
+        (SLIPS, "::as_if_accurate() {\n", "if ({off}) return false;"),
     "all accepted that are not false beyond doubt":
         (CLIMB, "::accept_undecided() {\n", "if ({off}) return false;"),
     "all dropped that are not true beyond doubt":
@@ -82,7 +84,7 @@ MOVES = {
     "climbs ended where an earlier one passed": (CLIMB, "::peak_ahead(bool learnt) {\n",
                                                  "if ({off}) return nullptr;"),
     "scales settled anew":
-        ("climb/search.cpp", "void settle_anew(Climb<Pose>& climb, "
+        ("search/search.cpp", "void settle_anew(Climb<Pose>& climb, "
          "std::vector<Explanation<Pose>>& found) {\n", "if ({off}) return;"),
 }
 STARTS = ["as stated", "odometry x 100", "loops x 0.01", "both x 0.01"]
@@ -112,7 +114,7 @@ def instrument(tree):
         text = behind + left_out.format(off=f"is_off({k})") + "\n"
         replace(room / source, [(behind, text)])
     loop = "for (const auto& [odometry, loops] : std::span(kStarts).first(kStartsAlways)) {"
-    replace(room / "climb/starts.hpp",
+    replace(room / "search/starts.hpp",
             [(loop, f'int start = 0;\n  {loop}\n'
                     f'    const char* without = std::getenv("{PREFIX}kStarts");\n'
                     "    if (without && start++ == std::atoi(without)) continue;"),

@@ -8,9 +8,9 @@
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/statistics.hpp"
 #include "online/present_map.hpp"
-#include "prune/consensus/climb/report.hpp"
 #include "prune/consensus/constants.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
+#include "prune/consensus/search/report.hpp"
 
 namespace isotherm::slam::detail {
 namespace {

@@ -5,10 +5,10 @@
 #include "graph/candidate_verdicts.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/slam/graph/usable_odometry.hpp"
-#include "prune/consensus/climb/report.hpp"
-#include "prune/consensus/climb/sample.hpp"
-#include "prune/consensus/climb/search.hpp"
 #include "prune/consensus/judge.hpp"
+#include "prune/consensus/search/report.hpp"
+#include "prune/consensus/search/sample.hpp"
+#include "prune/consensus/search/search.hpp"
 
 namespace isotherm::slam::detail {
 namespace {

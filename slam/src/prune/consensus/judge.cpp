@@ -6,8 +6,8 @@
 
 #include "graph/candidate_verdicts.hpp"
 #include "prune/consensus/climb/climb.hpp"
-#include "prune/consensus/climb/report.hpp"
-#include "prune/consensus/climb/search.hpp"
+#include "prune/consensus/search/report.hpp"
+#include "prune/consensus/search/search.hpp"
 
 namespace isotherm::slam {
 

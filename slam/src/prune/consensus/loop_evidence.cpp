@@ -7,7 +7,7 @@
 #include "isotherm/base/error.hpp"
 #include "isotherm/slam/graph/usable_odometry.hpp"
 #include "prune/consensus/climb/climb.hpp"
-#include "prune/consensus/climb/starts.hpp"
+#include "prune/consensus/search/starts.hpp"
 #include "prune/set_aside.hpp"
 
 namespace isotherm::slam {

@@ -1,4 +1,4 @@
-#include "prune/consensus/climb/search.hpp"
+#include "prune/consensus/search/search.hpp"
 
 #include <algorithm>
 #include <set>
@@ -8,8 +8,8 @@
 
 #include "isotherm/slam/simulate/corrupt.hpp"
 #include "isotherm/slam/simulate/simulate.hpp"
-#include "prune/consensus/climb/sample.hpp"
-#include "prune/consensus/climb/starts.hpp"
+#include "prune/consensus/search/sample.hpp"
+#include "prune/consensus/search/starts.hpp"
 #include "slam/loop_graph.hpp"
 
 namespace isotherm::slam::detail {

@@ -7,7 +7,8 @@
 #include <utility>
 
 #include "isotherm/base/error.hpp"
-#include "prune/consensus/climb/groups.hpp"
+#include "prune/consensus/climb/learn.hpp"
+#include "prune/consensus/climb/slip_trials.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
 #include "prune/consensus/objective/scale_prior.hpp"
 
@@ -34,16 +35,6 @@ bool any_is_worse(const Explanation<Pose>& found) {
   return false;
 }
 
-// Takes the scales of a lesson or of another explanation.
-template <class Found>
-auto scales_of(const Found& found) {
-  return [&found](auto& now) {
-    now.scale = found.scale;
-    now.shapes = found.shapes;
-    now.shares = found.shares;
-  };
-}
-
 }  // namespace
 
 template <class Pose>
@@ -53,7 +44,7 @@ Climb<Pose>::Climb(const Objective<Pose>& objective, ConsensusOptions options, R
       options_(std::move(options)),
       run_(std::move(run)),
       pace_(std::move(pace)),
-      assessment_(objective, pace_, run_.threads) {}
+      at_(objective, options_.calibrate, pace_, run_.threads) {}
 
 template <class Pose>
 Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
@@ -65,29 +56,22 @@ Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
 template <class Pose>
 Explanation<Pose> Climb<Pose>::from(Standpoint<Pose> standpoint) {
   stand_on(std::move(standpoint));
-  learnt_from_ = now_.accepted_count();
+  at_.learn_no_more_from(at_.now.accepted_count());
   return climb();
 }
 
 template <class Pose>
 Explanation<Pose> Climb<Pose>::climb() {
-  double before = best_.evidence;
+  double before = at_.best.evidence;
   do {
-    before = best_.evidence;
-    std::fill(dropped_.begin(), dropped_.end(), false);
+    before = at_.best.evidence;
+    std::fill(at_.dropped.begin(), at_.dropped.end(), false);
     const Explanation<Pose>* known = grow();
-    if (known != nullptr && known->evidence >= best_.evidence) return lead_to(*known);
-  } while (best_.evidence > before + kBetter);
-  peaks_.push_back(best_);
-  return best_;
-}
-
-template <class Pose>
-const Explanation<Pose>& Climb<Pose>::lead_to(const Explanation<Pose>& peak) {
-  for (Passed& passed : passed_) {
-    if (passed.peak == peaks_.size()) passed.peak = static_cast<std::size_t>(&peak - peaks_.data());
-  }
-  return peak;
+    if (known != nullptr && known->evidence >= at_.best.evidence)
+      return at_.peaks.end_at_known(*known);
+  } while (at_.best.evidence > before + kBetter);
+  at_.peaks.end_at(at_.best);
+  return at_.best;
 }
 
 template <class Pose>
@@ -96,22 +80,22 @@ Explanation<Pose> Climb<Pose>::resume(Standpoint<Pose> standpoint) {
   int vain = 0;
   for (int round = 0; round < options_.max_rounds && vain < kMostVain; ++round) {
     tell_progress();
-    const double highest = best_.evidence;
-    if (!shift() && !learn_more_than(0.0) && !find_slips()) break;
-    vain = best_.evidence > highest + kBetter ? 0 : vain + 1;
+    const double highest = at_.best.evidence;
+    if (!shift() && !at_.learn_more_than(0.0) && !at_.find_slips()) break;
+    vain = at_.best.evidence > highest + kBetter ? 0 : vain + 1;
   }
-  peaks_.push_back(best_);
-  return best_;
+  at_.peaks.end_at(at_.best);
+  return at_.best;
 }
 
 template <class Pose>
 void Climb<Pose>::stand_at(const Explanation<Pose>& found) {
-  const bool there = now_.accepted == found.accepted && now_.evidence == found.evidence &&
-                     now_.scale == found.scale && now_.shapes == found.shapes;
-  if (there && assessment_.estimate().is_factorised()) return;
-  now_ = found;
-  assessment_.restore(now_, assessment_.findings());
-  assess();
+  const bool there = at_.now.accepted == found.accepted && at_.now.evidence == found.evidence &&
+                     at_.now.scale == found.scale && at_.now.shapes == found.shapes;
+  if (there && at_.assessment.estimate().is_factorised()) return;
+  at_.now = found;
+  at_.assessment.restore(at_.now, at_.assessment.findings());
+  at_.assess();
 }
 
 template <class Pose>
@@ -120,10 +104,14 @@ Explanation<Pose> Climb<Pose>::slipping(const Explanation<Pose>& found) {
   const bool hidden = any_is_worse(found);
   const bool rejected = looks_afar_ && !found.accepts_all();
   if (!hidden && !rejected) return found;
-  stand_on({found, assessment_.findings()});
-  const bool unhidden = hidden && slip_as_if_accurate();
-  const bool believed = rejected && slip_for_any(rejected_runs(), true);
-  const bool disbelieved = rejected && slip_for_any(strays(), false);
+  stand_on({found, at_.assessment.findings()});
+  SlipTrials<Pose> trials(
+      at_, {.shift = [this] { return shift(); }, .settle = [this] { settle(at_.now.accepted); }},
+      log_odds_of(1.0 - options_.significance));
+  const bool unhidden = hidden && trials.as_if_accurate();
+  const bool believed = rejected && trials.for_rejected_runs();
+  const bool disbelieved = rejected && trials.for_strays();
+  doubted_ = std::move(trials).doubted();
   return unhidden || believed || disbelieved ? climb() : found;
 }
 
@@ -132,7 +120,7 @@ template <class Pose>
 Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
                                           const CovarianceScale& start_scale) {
   start(none_at(start_scale));
-  for (std::size_t k = 0; k < accepted.size(); ++k) dropped_[k] = !accepted[k];
+  for (std::size_t k = 0; k < accepted.size(); ++k) at_.dropped[k] = !accepted[k];
   grow();
   return settle(accepted);
 }
@@ -144,29 +132,30 @@ Explanation<Pose> Climb<Pose>::settled_near(const Explanation<Pose>& found,
   Explanation<Pose> none = none_at(scale);
   none.shapes.slips = found.shapes.slips;
   start(std::move(none));
-  assessment_.stand_on(found.layout);
+  at_.assessment.stand_on(found.layout);
   return settle(found.accepted);
 }
 
 template <class Pose>
 const Explanation<Pose>& Climb<Pose>::settle(const std::vector<bool>& accepted) {
-  now_.accepted = accepted;
-  assess();
-  const auto by_levelling = [this] { return level_odometry(); };
-  while (learn_more_than(0.0) || weigh_anew() || find_slips() || once(Trial::level, by_levelling)) {
+  at_.now.accepted = accepted;
+  at_.assess();
+  const auto by_levelling = [this] { return at_.level_odometry(); };
+  while (at_.learn_more_than(0.0) || weigh_anew() || at_.find_slips() ||
+         at_.once(Trial::level, by_levelling)) {
   }
-  return now_;
+  return at_.now;
 }
 
 template <class Pose>
 const Explanation<Pose>* Climb<Pose>::nothing(double least) {
   if (!nothing_ && least < nothing_below_) {
-    now_ = none_at({});
-    std::tie(now_.scale.odometry, now_.shapes.odometry) =
+    at_.now = none_at({});
+    std::tie(at_.now.scale.odometry, at_.now.shapes.odometry) =
         scale_and_shape<typename Pose::Tangent>(objective_.most_odometry().cwiseMin(0.0));
-    assessment_.start_over();
-    if (assessment_.assess(now_, least)) {
-      nothing_ = now_;
+    at_.assessment.start_over();
+    if (at_.assessment.assess(at_.now, least)) {
+      nothing_ = at_.now;
     } else {
       nothing_below_ = least;
     }
@@ -179,40 +168,22 @@ const Explanation<Pose>* Climb<Pose>::nothing(double least) {
 // `learnt` from them; but not where this climb can learn better ones.
 template <class Pose>
 const Explanation<Pose>* Climb<Pose>::peak_ahead(bool learnt) {
-  for (const Passed& passed : passed_) {
-    if (passed.peak != peaks_.size() && is_here(passed)) return &peaks_[passed.peak];
-  }
-  for (const auto& peak : peaks_) {
-    if (now_.accepted == peak.accepted) {
-      if (!outdoes(peak.evidence)) return &peak;
-    } else if (learnt && is_part(now_.accepted, peak.accepted)) {
-      const Place here = place();
-      if (!try_with(scales_of(peak), {.gain = -kBetter, .from = &peak.layout})) continue;
-      const double there = now_.evidence;
-      go_back(here);
-      if (!outdoes(there)) return &peak;
+  if (const auto* beyond = at_.peaks.beyond(at_.now)) return beyond;
+  for (const auto& peak : at_.peaks.all()) {
+    if (at_.now.accepted == peak.accepted) {
+      if (!at_.outdoes(peak.evidence)) return &peak;
+    } else if (learnt && is_part(at_.now.accepted, peak.accepted)) {
+      std::optional<double> there;
+      at_.all_or_nothing([&] {
+        if (at_.try_with(scales_of(peak), {.gain = -kBetter, .from = &peak.layout})) {
+          there = at_.now.evidence;
+        }
+        return false;
+      });
+      if (there && !at_.outdoes(*there)) return &peak;
     }
   }
   return nullptr;
-}
-
-// The same loops at about the same scales, and not better.
-template <class Pose>
-bool Climb<Pose>::is_here(const Passed& passed) const {
-  return now_.accepted == passed.accepted && now_.evidence <= passed.evidence + kBetter &&
-         about_the_same(now_.scale, passed.scale);
-}
-
-// Whether the scales that can be learnt from here explain the same loops better. Each lesson gains
-// less than the one before: it ends where one more like the last would not lead there.
-template <class Pose>
-bool Climb<Pose>::outdoes(double evidence) {
-  double before = -std::numeric_limits<double>::infinity();
-  while (now_.evidence <= evidence && 2.0 * now_.evidence - before > evidence) {
-    before = now_.evidence;
-    if (!learn_more_than(0.0)) break;
-  }
-  return now_.evidence > evidence;
 }
 
 template <class Pose>
@@ -226,25 +197,22 @@ Explanation<Pose> Climb<Pose>::none_at(const CovarianceScale& scale) const {
 
 template <class Pose>
 void Climb<Pose>::start(Explanation<Pose> explanation) {
-  now_ = std::move(explanation);
-  assessment_.start_over();
+  at_.now = std::move(explanation);
+  at_.assessment.start_over();
   begin();
 }
 
 template <class Pose>
 void Climb<Pose>::stand_on(Standpoint<Pose> standpoint) {
-  now_ = std::move(standpoint.explanation);
-  assessment_.restore(now_, std::move(standpoint.found));
+  at_.now = std::move(standpoint.explanation);
+  at_.assessment.restore(at_.now, std::move(standpoint.found));
   begin();
 }
 
 template <class Pose>
 void Climb<Pose>::begin() {
-  dropped_.assign(now_.accepted.size(), false);
-  learnt_from_ = drawn_from_ = 0;
-  failed_ = {};
-  assessment_.assess(now_);
-  best_ = now_;
+  drawn_from_ = 0;
+  at_.begin();
 }
 
 // The peak of an earlier climb that this one leads to, if any.
@@ -253,16 +221,16 @@ const Explanation<Pose>* Climb<Pose>::grow() {
   int vain = 0;  // moves since the best explanation so far
   for (int round = 0; round < options_.max_rounds; ++round) {
     tell_progress();
-    const double before = best_.evidence;
-    const std::size_t had = now_.accepted_count();
-    const bool settled = had == 0 || assessment_.estimate().settled();
+    const double before = at_.best.evidence;
+    const std::size_t had = at_.now.accepted_count();
+    const bool settled = had == 0 || at_.assessment.estimate().settled();
     if (!settled && had >= kMoreTelling * drawn_from_) draw_anew();
     const bool learnt =
-        had >= kMoreTelling * learnt_from_ && learn_more_than(gain_of_dropping(misfits()));
+        had >= kMoreTelling * at_.learnt_from() && at_.learn_more_than(gain_of_dropping(misfits()));
     if (const auto* known = had > 0 ? peak_ahead(learnt) : nullptr) return known;
     if (!learnt && !move()) return nullptr;
-    const bool grows = 2 * now_.accepted_count() >= 3 * had;
-    vain = grows || best_.evidence > before + kBetter ? 0 : vain + 1;
+    const bool grows = 2 * at_.now.accepted_count() >= 3 * had;
+    vain = grows || at_.best.evidence > before + kBetter ? 0 : vain + 1;
     if (vain == kMostVain) return nullptr;
   }
   settled_ = false;
@@ -272,9 +240,9 @@ const Explanation<Pose>* Climb<Pose>::grow() {
 // False where no move is left.
 template <class Pose>
 bool Climb<Pose>::move() {
-  return shift() || learn_more_than(0.0) || weigh_anew() || find_slips() ||
-         once(Trial::undecided, [this] { return accept_undecided(); }) ||
-         once(Trial::doubtful, [this] { return drop_undecided(); });
+  return shift() || at_.learn_more_than(0.0) || weigh_anew() || at_.find_slips() ||
+         at_.once(Trial::undecided, [this] { return accept_undecided(); }) ||
+         at_.once(Trial::doubtful, [this] { return drop_undecided(); });
 }
 
 // The same at about these scales.
@@ -286,36 +254,27 @@ bool Climb<Pose>::shift() {
   if (!batch.loops.empty() && batch.gain > dropping) {
     accept(batch.loops);
   } else if (!out.empty()) {
-    if (!learn_more_than(dropping)) drop(out);
+    if (!at_.learn_more_than(dropping)) drop(out);
   } else {
     return false;
   }
   return true;
 }
 
-// Unless it failed here before.
-template <class Pose>
-bool Climb<Pose>::once(Trial trial, const std::function<bool()>& move) {
-  if (failed_[trial]) return false;
-  if (move()) return true;
-  failed_[trial] = true;
-  return false;
-}
-
 // A loop that is taken for accurate draws the map to itself, and looks accurate there: each is as
 // accurate as the others say.
 template <class Pose>
 bool Climb<Pose>::weigh_by_others() {
-  const ScaleMixture& mixture = assessment_.findings().mixture;
-  std::vector<LoopWeight> weights = now_.weights;
+  const ScaleMixture& mixture = at_.assessment.findings().mixture;
+  std::vector<LoopWeight> weights = at_.now.weights;
   bool differ = false;
   for (std::size_t k = 0; k < weights.size(); ++k) {
-    if (!now_.accepted[k]) continue;
-    weights[k] = now_.standings[k].weight;
-    differ = differ ||
-             are_of_different_scales(mixture.factor(weights[k]), mixture.factor(now_.weights[k]));
+    if (!at_.now.accepted[k]) continue;
+    weights[k] = at_.now.standings[k].weight;
+    differ = differ || are_of_different_scales(mixture.factor(weights[k]),
+                                               mixture.factor(at_.now.weights[k]));
   }
-  return differ && try_with([&](auto& now) { now.weights = weights; });
+  return differ && at_.try_with([&](auto& now) { now.weights = weights; });
 }
 
 // Lessons hold residuals. Where some loops are taken for exact the map bends to them, and odometry
@@ -323,16 +282,18 @@ bool Climb<Pose>::weigh_by_others() {
 // accurate as the worst is to explain them better.
 template <class Pose>
 bool Climb<Pose>::weigh_afar() {
-  const auto [factor, shares] = all_as_worst(now_.shares);
-  if (!options_.calibrate || !looks_afar_ || !now_.tells_of_scales()) return false;
-  const Lesson<Pose> wider{{now_.scale.odometry, now_.scale.loops * factor}, now_.shapes, shares};
-  return std::log(wider.scale.loops) < kMostScale && try_with(scales_of(wider), {.learning = true});
+  const auto [factor, shares] = all_as_worst(at_.now.shares);
+  if (!options_.calibrate || !looks_afar_ || !at_.now.tells_of_scales()) return false;
+  const Lesson<Pose> wider{
+      {at_.now.scale.odometry, at_.now.scale.loops * factor}, at_.now.shapes, shares};
+  return std::log(wider.scale.loops) < kMostScale &&
+         at_.try_with(scales_of(wider), {.learning = true});
 }
 
 template <class Pose>
 bool Climb<Pose>::weigh_anew() {
-  return once(Trial::weights_by_others, [this] { return weigh_by_others(); }) ||
-         once(Trial::afar, [this] { return weigh_afar(); });
+  return at_.once(Trial::weights_by_others, [this] { return weigh_by_others(); }) ||
+         at_.once(Trial::afar, [this] { return weigh_afar(); });
 }
 
 // All loops that are not false beyond doubt, by twice the log odds that a verdict takes: where a
@@ -342,8 +303,9 @@ template <class Pose>
 bool Climb<Pose>::accept_undecided() {
   const double least = 2.0 * log_odds_of(options_.significance);
   Selection loops;
-  for (std::size_t k = 0; k < now_.standings.size(); ++k) {
-    if (!now_.accepted[k] && now_.standings[k].connected() && now_.standings[k].log_odds > least) {
+  for (std::size_t k = 0; k < at_.now.standings.size(); ++k) {
+    if (!at_.now.accepted[k] && at_.now.standings[k].connected() &&
+        at_.now.standings[k].log_odds > least) {
       loops.push_back(static_cast<Index>(k));
     }
   }
@@ -356,51 +318,41 @@ template <class Pose>
 bool Climb<Pose>::drop_undecided() {
   const double most = log_odds_of(1.0 - options_.significance);
   Selection out;
-  for (const Group& run : groups(now_.accepted)) {
-    const auto in_doubt = [&](Index k) { return now_.standings[k].log_odds < most; };
+  for (const Group& run : groups(at_.now.accepted)) {
+    const auto in_doubt = [&](Index k) { return at_.now.standings[k].log_odds < most; };
     if (std::ranges::any_of(run.loops, in_doubt)) {
       out.insert(out.end(), run.loops.begin(), run.loops.end());
     }
   }
-  return out.size() < now_.accepted_count() && try_all_as(out, false);
+  return out.size() < at_.now.accepted_count() && try_all_as(out, false);
 }
 
 // Steps that do not settle may be on the way to another minimum than the least.
 template <class Pose>
 void Climb<Pose>::draw_anew() {
-  drawn_from_ = now_.accepted_count();
+  drawn_from_ = at_.now.accepted_count();
   try {
-    const Layout relaxed = assessment_.relaxed(now_);
-    try_with([](auto&) {}, {.from = &relaxed});
+    const auto relaxed = at_.assessment.relaxed(at_.now);
+    at_.try_with([](auto&) {}, {.from = &relaxed});
   } catch (const NumericalError&) {  // nothing to start from
   }
-}
-
-// Whether the evidence reaches `least`.
-template <class Pose>
-bool Climb<Pose>::assess(double least) {
-  if (!assessment_.assess(now_, least)) return false;
-  failed_ = {};
-  if (now_.evidence > best_.evidence) best_ = now_;
-  passed_.push_back({now_.accepted, now_.scale, now_.evidence, peaks_.size()});
-  return true;
 }
 
 // Of the accepted loops that lower the evidence the worse half, and all that are at least half as
 // bad as the worst: each one dropped changes what is predicted of the rest.
 template <class Pose>
 typename Climb<Pose>::Selection Climb<Pose>::misfits() const {
-  const auto& standings = now_.standings;
+  const auto& standings = at_.now.standings;
   std::vector<double> worst;
   for (std::size_t k = 0; k < standings.size(); ++k) {
-    if (now_.accepted[k] && standings[k].log_odds < 0.0) worst.push_back(standings[k].log_odds);
+    if (at_.now.accepted[k] && standings[k].log_odds < 0.0) worst.push_back(standings[k].log_odds);
   }
   if (worst.empty()) return {};
   std::ranges::sort(worst);
   const double most = std::max(0.5 * worst.front(), worst[worst.size() / 2]);
   Selection out;
   for (std::size_t k = 0; k < standings.size(); ++k) {
-    if (now_.accepted[k] && standings[k].log_odds <= most) out.push_back(static_cast<Index>(k));
+    if (at_.now.accepted[k] && standings[k].log_odds <= most) out.push_back(static_cast<Index>(k));
   }
   return out;
 }
@@ -408,55 +360,38 @@ typename Climb<Pose>::Selection Climb<Pose>::misfits() const {
 template <class Pose>
 double Climb<Pose>::gain_of_dropping(const Selection& loops) const {
   double gain = 0.0;
-  for (const Index k : loops) gain -= now_.standings[k].log_odds;
+  for (const Index k : loops) gain -= at_.now.standings[k].log_odds;
   return gain;
 }
 
 template <class Pose>
-void Climb<Pose>::take_as(const Selection& loops, bool accepted) {
-  for (const Index k : loops) {
-    now_.accepted[k] = accepted;
-    dropped_[k] = !accepted;
-  }
-}
-
-template <class Pose>
 void Climb<Pose>::drop(const Selection& loops) {
-  take_as(loops, false);
-  assess();
+  at_.take_as(loops, false);
+  at_.assess();
   note(0, loops.size());
 }
 
 template <class Pose>
-std::vector<bool> Climb<Pose>::open() const {
-  std::vector<bool> open(dropped_.size());
-  for (std::size_t k = 0; k < open.size(); ++k) {
-    open[k] = !now_.accepted[k] && !dropped_[k];
-  }
-  return open;
-}
-
-template <class Pose>
 std::vector<Group> Climb<Pose>::groups(const std::vector<bool>& among) const {
-  return groups_of(assessment_, now_, among);
+  return groups_of(at_.assessment, at_.now, among);
 }
 
 template <class Pose>
 std::vector<Group> Climb<Pose>::gaining_groups() const {
-  auto all = groups(open());
+  auto all = groups(at_.open());
   std::erase_if(all, [](const Group& group) { return group.gain <= 0.0; });
   return all;
 }
 
 template <class Pose>
 Group Climb<Pose>::next_batch() const {
-  return most_certain(gaining_groups(), now_.accepted_count());
+  return most_certain(gaining_groups(), at_.now.accepted_count());
 }
 
 template <class Pose>
 void Climb<Pose>::accept(const Selection& loops) {
-  take_as(loops, true);
-  assess();
+  at_.take_as(loops, true);
+  at_.assess();
   note(loops.size(), 0);
 }
 
@@ -466,228 +401,26 @@ bool Climb<Pose>::try_all_as(const Selection& loops, bool accepted) {
   const auto change = [&](auto& now) {
     for (const Index k : loops) now.accepted[k] = accepted;
   };
-  if (loops.empty() || !try_with(change, {.learning = accepted})) return false;
+  if (loops.empty() || !at_.try_with(change, {.learning = accepted})) return false;
   if (!accepted) {
-    for (const Index k : loops) dropped_[k] = true;
+    for (const Index k : loops) at_.dropped[k] = true;
   }
   note(accepted ? loops.size() : 0, accepted ? 0 : loops.size());
   return true;
-}
-
-// Whether there was anything to learn that gains more than this.
-template <class Pose>
-bool Climb<Pose>::learn_more_than(double gain) {
-  if (!options_.calibrate) return false;
-  learnt_from_ = std::max<std::size_t>(now_.accepted_count(), 1);
-  const double least = std::max(gain, kBetter);
-  for (const Trial trial : {Trial::lesson, Trial::lesson_of_scales}) {
-    if (failed_[trial]) continue;
-    const Lesson<Pose> found = learn(assessment_, now_, trial == Trial::lesson_of_scales);
-    if (found.gain <= least) continue;
-    if (try_with(scales_of(found))) return true;
-    failed_[trial] = true;
-    if (found.shapes.is_about(now_.shapes)) failed_[Trial::lesson_of_scales] = true;
-  }
-  return false;
-}
-
-// All edges that gain at least half of what the one does that gains most by erring more than
-// others, or no more, since each explains a part of what others would; or else that one.
-template <class Pose>
-bool Climb<Pose>::try_best_slips(double least) {
-  auto changes = assessment_.slip_changes(now_);
-  std::erase_if(changes, [least](const SlipChange& change) { return change.gain < least; });
-  std::ranges::sort(changes, std::greater{}, &SlipChange::gain);
-  std::size_t count = 0;
-  while (count < changes.size() && changes[count].gain >= 0.5 * changes.front().gain) ++count;
-  const auto try_first = [&](std::size_t some) {
-    return try_with([&](auto&) { slip(std::span(changes).first(some)); });
-  };
-  return count > 0 && (try_first(count) || (count > 1 && try_first(1)));
-}
-
-// Until none gains, before loops are accepted that a slip too many leaves room for.
-template <class Pose>
-bool Climb<Pose>::find_slips() {
-  if (!options_.calibrate || failed_[Trial::slips]) return false;
-  const bool found = take_slips(0.0);
-  failed_[Trial::slips] = !found;
-  return found;
-}
-
-// Whether there was any that gains as much.
-template <class Pose>
-bool Climb<Pose>::take_slips(double least) {
-  bool any = false;
-  while (try_best_slips(least)) any = true;
-  return any;
-}
-
-// Coordinates that an edge slips in seem to err more than others, until that is known.
-template <class Pose>
-bool Climb<Pose>::level_odometry() {
-  if (now_.shapes.slips.empty() || !options_.calibrate) return false;
-  return try_with([](auto& now) { now.shapes.odometry.setOnes(); }, {.learning = true});
-}
-
-// Slips that are beyond doubt were all loops as accurate as most, and odometry in all coordinates.
-template <class Pose>
-bool Climb<Pose>::slip_as_if_accurate() {
-  const double least = now_.evidence + kBetter;
-  return all_or_nothing([&] {
-    const ScaleShares shares = std::exchange(now_.shares, all_as_most(now_.shares));
-    now_.weights.assign(now_.weights.size(), {});
-    now_.shapes.odometry.setOnes();
-    assess();
-    const bool found = take_slips(log_odds_of(1.0 - options_.significance));
-    now_.shares = shares;
-    return found && settle(now_.accepted).evidence > least;
-  });
-}
-
-// Whether it gains of any of these that they are all `accepted`, or none, until eight in a row do
-// not.
-template <class Pose>
-bool Climb<Pose>::slip_for_any(const std::vector<Selection>& all, bool accepted) {
-  bool any = false;
-  int vain = 0;
-  for (const Selection& loops : all) {
-    const Index first = loops.front();
-    if (now_.accepted[first] == accepted || !now_.standings[first].connected()) continue;
-    const bool gains = slip_for(loops, accepted);
-    any = any || gains;
-    vain = gains ? 0 : vain + 1;
-    if (vain == kMostVain) break;
-  }
-  return any;
-}
-
-// Whether it gains that these are true, or false, and odometry slips otherwise. Else it is what
-// explains that best, and how much worse that is says how likely it is.
-template <class Pose>
-bool Climb<Pose>::slip_for(const Selection& loops, bool accepted) {
-  const double least = now_.evidence + kBetter;
-  return all_or_nothing([&] {
-    std::fill(dropped_.begin(), dropped_.end(), false);
-    take_as(loops, accepted);
-    assess();
-    const auto& first = assessment_.graph().loops[loops.front()];
-    if (accepted && !try_best_slips(0.0) && !slip_elsewhere(first)) return false;
-    Explanation<Pose> best = now_;
-    while (now_.evidence <= least && (try_best_slips(0.0) || shift())) {
-      const bool still = now_.accepted[loops.front()] == accepted;
-      if (still && now_.evidence > best.evidence) best = now_;
-    }
-    if (now_.evidence > least) return true;
-    doubted_.push_back(std::move(best));
-    return false;
-  });
-}
-
-// Whether another edge explains better what is next to a loop than the one that slips nearest to
-// one of its ends does.
-template <class Pose>
-bool Climb<Pose>::slip_elsewhere(const Link<Pose>& loop) {
-  const double least = now_.evidence + kBetter;
-  for (const Index end : {loop.a, loop.b}) {
-    const auto edge = nearest_slip(now_.shapes.slips, assessment_.graph().vertex[end]);
-    const bool better = edge && all_or_nothing([&] {
-                          slip(std::array{SlipChange{.vertex = *edge, .slip = 0}});
-                          assess();
-                          return try_best_slips(0.0) && now_.evidence > least;
-                        });
-    if (better) return true;
-  }
-  return false;
-}
-
-// The likeliest first: they may be refuted each alone, and tell a slip together.
-template <class Pose>
-std::vector<typename Climb<Pose>::Selection> Climb<Pose>::rejected_runs() const {
-  auto runs = groups(open());
-  std::ranges::stable_sort(runs, std::greater{}, &Group::gain);
-  std::vector<Selection> loops;
-  for (Group& run : runs) loops.push_back(std::move(run.loops));
-  return loops;
-}
-
-// Accepted loops next to which in their run all are rejected. One that tells a slip alone may be
-// false: with it the map agrees with that loop, and with no other of the run.
-template <class Pose>
-std::vector<typename Climb<Pose>::Selection> Climb<Pose>::strays() const {
-  std::vector<int> agree(now_.accepted.size(), 0);
-  std::vector<int> differ = agree;
-  for (std::size_t k = 0; k < agree.size(); ++k) {
-    const Index before = objective_.runs().before(static_cast<Index>(k));
-    if (before == Runs<Pose>::kNone) continue;
-    auto& count = now_.accepted[k] == now_.accepted[before] ? agree : differ;
-    ++count[k];
-    ++count[before];
-  }
-  std::vector<Selection> strays;
-  for (std::size_t k = 0; k < agree.size(); ++k) {
-    if (now_.accepted[k] && differ[k] > 0 && agree[k] == 0) {
-      strays.push_back({static_cast<Index>(k)});
-    }
-  }
-  return strays;
-}
-
-template <class Pose>
-void Climb<Pose>::slip(std::span<const SlipChange> changes) {
-  Slips& changed = now_.shapes.slips;
-  changed.resize(objective_.odometry_edges());
-  for (const SlipChange& change : changes) {
-    changed[static_cast<std::size_t>(change.vertex)] = change.slip;
-  }
-  if (!any_slips(changed)) changed.clear();
-}
-
-// Whether the moves succeed, or else nothing changes. Scales at which the normal equations break
-// down explain nothing.
-template <class Pose>
-bool Climb<Pose>::all_or_nothing(const std::function<bool()>& moves) {
-  const Place before = place();
-  bool better = false;
-  try {
-    better = moves();
-  } catch (const NumericalError&) {
-    better = false;
-  }
-  if (!better) go_back(before);
-  return better;
-}
-
-// Whether that gains as much, or else nothing changes.
-template <class Pose>
-bool Climb<Pose>::try_with(const Change& change, const TrialTerms<Pose>& terms) {
-  const double least = now_.evidence + terms.gain;
-  return all_or_nothing([&] {
-    change(now_);
-    if (terms.from) assessment_.stand_on(*terms.from);
-    if (terms.learning) assessment_.forget_nearness();
-    return terms.learning ? assess() && outdoes(least) : assess(least);
-  });
-}
-
-template <class Pose>
-void Climb<Pose>::go_back(const Place& place) {
-  now_ = place.now;
-  assessment_.restore(now_, place.found);
-  failed_ = place.failed;
 }
 
 template <class Pose>
 void Climb<Pose>::note(std::size_t accepted, std::size_t dropped) {
   moves_.push_back({.accepted = static_cast<std::int64_t>(accepted),
                     .dropped = static_cast<std::int64_t>(dropped),
-                    .in_force = static_cast<std::int64_t>(now_.accepted_count())});
+                    .in_force = static_cast<std::int64_t>(at_.now.accepted_count())});
 }
 
 template <class Pose>
 void Climb<Pose>::tell_progress() const {
   if (!run_.progress) return;
-  if (!run_.progress({"consensus", now_.accepted_count(), now_.accepted.size()})) throw Cancelled();
+  if (!run_.progress({"consensus", at_.now.accepted_count(), at_.now.accepted.size()}))
+    throw Cancelled();
 }
 
 template class Climb<Pose2>;

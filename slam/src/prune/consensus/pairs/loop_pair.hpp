@@ -34,8 +34,8 @@ bool is_copy(const Link<Pose>& a, const Link<Pose>& b) {
 }
 
 /// What `known` and the two pieces of odometry between their ends say of the residual of
-/// `measured`. That does not depend on the estimate, nor on how far odometry has drifted between the
-/// two ends of the loops. Both must run between the same chains.
+/// `measured`. That does not depend on the estimate, nor on how far odometry has drifted between
+/// the two ends of the loops. Both must run between the same chains.
 template <class Pose>
 Belief<Pose> pair_belief(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
                          const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured);

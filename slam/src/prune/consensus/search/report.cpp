@@ -1,4 +1,4 @@
-#include "prune/consensus/climb/report.hpp"
+#include "prune/consensus/search/report.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "prune/consensus/climb/search.hpp"
+#include "prune/consensus/search/search.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -6,10 +6,10 @@
 #include <optional>
 #include <span>
 
-#include "prune/consensus/climb/report.hpp"
-#include "prune/consensus/climb/sample.hpp"
-#include "prune/consensus/climb/starts.hpp"
 #include "prune/consensus/objective/log_odds.hpp"
+#include "prune/consensus/search/report.hpp"
+#include "prune/consensus/search/sample.hpp"
+#include "prune/consensus/search/starts.hpp"
 
 namespace isotherm::slam::detail {
 namespace {

@@ -1,4 +1,4 @@
-#include "prune/consensus/climb/sample.hpp"
+#include "prune/consensus/search/sample.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,0 +1,164 @@
+#include "prune/consensus/climb/position.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "isotherm/base/error.hpp"
+#include "prune/consensus/climb/learn.hpp"
+
+namespace isotherm::slam::detail {
+
+template <class Pose>
+Position<Pose>::Position(const Objective<Pose>& objective, bool calibrate, Pace pace, int threads)
+    : assessment(objective, std::move(pace), threads), calibrate_(calibrate) {}
+
+template <class Pose>
+void Position<Pose>::begin() {
+  dropped.assign(now.accepted.size(), false);
+  learnt_from_ = 0;
+  failed_ = {};
+  assessment.assess(now);
+  best = now;
+}
+
+template <class Pose>
+bool Position<Pose>::assess(double least) {
+  if (!assessment.assess(now, least)) return false;
+  failed_ = {};
+  if (now.evidence > best.evidence) best = now;
+  peaks.pass(now);
+  return true;
+}
+
+template <class Pose>
+bool Position<Pose>::once(Trial trial, const std::function<bool()>& move) {
+  if (failed_[trial]) return false;
+  if (move()) return true;
+  failed_[trial] = true;
+  return false;
+}
+
+template <class Pose>
+void Position<Pose>::take_as(const Selection& loops, bool accepted) {
+  for (const Index k : loops) {
+    now.accepted[k] = accepted;
+    dropped[k] = !accepted;
+  }
+}
+
+template <class Pose>
+std::vector<bool> Position<Pose>::open() const {
+  std::vector<bool> open(dropped.size());
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    open[k] = !now.accepted[k] && !dropped[k];
+  }
+  return open;
+}
+
+template <class Pose>
+bool Position<Pose>::all_or_nothing(const std::function<bool()>& moves) {
+  const Place before{now, assessment.findings(), failed_};
+  bool better = false;
+  try {
+    better = moves();
+  } catch (const NumericalError&) {
+    better = false;
+  }
+  if (!better) go_back(before);
+  return better;
+}
+
+template <class Pose>
+bool Position<Pose>::try_with(const Change& change, const TrialTerms<Pose>& terms) {
+  const double least = now.evidence + terms.gain;
+  return all_or_nothing([&] {
+    change(now);
+    if (terms.from) assessment.stand_on(*terms.from);
+    if (terms.learning) assessment.forget_nearness();
+    return terms.learning ? assess() && outdoes(least) : assess(least);
+  });
+}
+
+template <class Pose>
+void Position<Pose>::go_back(const Place& place) {
+  now = place.now;
+  assessment.restore(now, place.found);
+  failed_ = place.failed;
+}
+
+template <class Pose>
+bool Position<Pose>::learn_more_than(double gain) {
+  if (!calibrate_) return false;
+  learnt_from_ = std::max<std::size_t>(now.accepted_count(), 1);
+  const double least = std::max(gain, kBetter);
+  for (const Trial trial : {Trial::lesson, Trial::lesson_of_scales}) {
+    if (failed_[trial]) continue;
+    const Lesson<Pose> found = learn(assessment, now, trial == Trial::lesson_of_scales);
+    if (found.gain <= least) continue;
+    if (try_with(scales_of(found))) return true;
+    failed_[trial] = true;
+    if (found.shapes.is_about(now.shapes)) failed_[Trial::lesson_of_scales] = true;
+  }
+  return false;
+}
+
+// Each lesson gains less than the one before: it ends where one more like the last would not lead
+// there.
+template <class Pose>
+bool Position<Pose>::outdoes(double evidence) {
+  double before = -std::numeric_limits<double>::infinity();
+  while (now.evidence <= evidence && 2.0 * now.evidence - before > evidence) {
+    before = now.evidence;
+    if (!learn_more_than(0.0)) break;
+  }
+  return now.evidence > evidence;
+}
+
+template <class Pose>
+bool Position<Pose>::find_slips() {
+  if (!calibrate_ || failed_[Trial::slips]) return false;
+  const bool found = take_slips(0.0);
+  failed_[Trial::slips] = !found;
+  return found;
+}
+
+template <class Pose>
+bool Position<Pose>::take_slips(double least) {
+  bool any = false;
+  while (try_best_slips(least)) any = true;
+  return any;
+}
+
+template <class Pose>
+bool Position<Pose>::try_best_slips(double least) {
+  auto changes = assessment.slip_changes(now);
+  std::erase_if(changes, [least](const SlipChange& change) { return change.gain < least; });
+  std::ranges::sort(changes, std::greater{}, &SlipChange::gain);
+  std::size_t count = 0;
+  while (count < changes.size() && changes[count].gain >= 0.5 * changes.front().gain) ++count;
+  const auto try_first = [&](std::size_t some) {
+    return try_with([&](auto&) { slip(std::span(changes).first(some)); });
+  };
+  return count > 0 && (try_first(count) || (count > 1 && try_first(1)));
+}
+
+template <class Pose>
+void Position<Pose>::slip(std::span<const SlipChange> changes) {
+  Slips& changed = now.shapes.slips;
+  changed.resize(assessment.objective().odometry_edges());
+  for (const SlipChange& change : changes) {
+    changed[static_cast<std::size_t>(change.vertex)] = change.slip;
+  }
+  if (!any_slips(changed)) changed.clear();
+}
+
+template <class Pose>
+bool Position<Pose>::level_odometry() {
+  if (now.shapes.slips.empty() || !calibrate_) return false;
+  return try_with([](auto& leveled) { leveled.shapes.odometry.setOnes(); }, {.learning = true});
+}
+
+template class Position<Pose2>;
+template class Position<Pose3>;
+
+}  // namespace isotherm::slam::detail

@@ -1,0 +1,121 @@
+#include "prune/consensus/climb/slip_trials.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "prune/consensus/climb/groups.hpp"
+
+namespace isotherm::slam::detail {
+namespace {
+
+constexpr int kMostInVain = 8;  // trials in a row
+
+}  // namespace
+
+template <class Pose>
+bool SlipTrials<Pose>::as_if_accurate() {
+  const double least = at_.now.evidence + kBetter;
+  return at_.all_or_nothing([&] {
+    const ScaleShares shares = std::exchange(at_.now.shares, all_as_most(at_.now.shares));
+    at_.now.weights.assign(at_.now.weights.size(), {});
+    at_.now.shapes.odometry.setOnes();
+    at_.assess();
+    const bool found = at_.take_slips(decisive_);
+    at_.now.shares = shares;
+    if (!found) return false;
+    moves_.settle();
+    return at_.now.evidence > least;
+  });
+}
+
+// Whether it gains of any of these that they are all `accepted`, or none, until eight in a row do
+// not.
+template <class Pose>
+bool SlipTrials<Pose>::for_any(const std::vector<Selection>& all, bool accepted) {
+  bool any = false;
+  int vain = 0;
+  for (const Selection& loops : all) {
+    const Index first = loops.front();
+    if (at_.now.accepted[first] == accepted || !at_.now.standings[first].connected()) continue;
+    const bool gains = for_all_of(loops, accepted);
+    any = any || gains;
+    vain = gains ? 0 : vain + 1;
+    if (vain == kMostInVain) break;
+  }
+  return any;
+}
+
+// Whether it gains that these are true, or false, and odometry slips otherwise. Else it is what
+// explains that best, and how much worse that is says how likely it is.
+template <class Pose>
+bool SlipTrials<Pose>::for_all_of(const Selection& loops, bool accepted) {
+  const double least = at_.now.evidence + kBetter;
+  return at_.all_or_nothing([&] {
+    std::fill(at_.dropped.begin(), at_.dropped.end(), false);
+    at_.take_as(loops, accepted);
+    at_.assess();
+    if (accepted && !at_.try_best_slips(0.0) && !elsewhere(loops.front())) return false;
+    Explanation<Pose> best = at_.now;
+    while (at_.now.evidence <= least && (at_.try_best_slips(0.0) || moves_.shift())) {
+      const bool still = at_.now.accepted[loops.front()] == accepted;
+      if (still && at_.now.evidence > best.evidence) best = at_.now;
+    }
+    if (at_.now.evidence > least) return true;
+    doubted_.push_back(std::move(best));
+    return false;
+  });
+}
+
+// Whether another edge explains better what is next to a loop than the one that slips nearest to
+// one of its ends does.
+template <class Pose>
+bool SlipTrials<Pose>::elsewhere(Index loop) {
+  const double least = at_.now.evidence + kBetter;
+  const auto& graph = at_.assessment.graph();
+  const auto& link = graph.loops[loop];
+  for (const Index end : {graph.vertex[link.a], graph.vertex[link.b]}) {
+    const auto edge = nearest_slip(at_.now.shapes.slips, end);
+    const bool better = edge && at_.all_or_nothing([&] {
+      at_.slip(std::array{SlipChange{.vertex = *edge, .slip = 0}});
+      at_.assess();
+      return at_.try_best_slips(0.0) && at_.now.evidence > least;
+    });
+    if (better) return true;
+  }
+  return false;
+}
+
+template <class Pose>
+std::vector<typename SlipTrials<Pose>::Selection> SlipTrials<Pose>::rejected_runs() const {
+  auto runs = groups_of(at_.assessment, at_.now, at_.open());
+  std::ranges::stable_sort(runs, std::greater{}, &Group::gain);
+  std::vector<Selection> loops;
+  for (Group& run : runs) loops.push_back(std::move(run.loops));
+  return loops;
+}
+
+template <class Pose>
+std::vector<typename SlipTrials<Pose>::Selection> SlipTrials<Pose>::strays() const {
+  std::vector<int> agree(at_.now.accepted.size(), 0);
+  std::vector<int> differ = agree;
+  for (std::size_t k = 0; k < agree.size(); ++k) {
+    const Index before = at_.assessment.objective().runs().before(static_cast<Index>(k));
+    if (before == Runs<Pose>::kNone) continue;
+    auto& count = at_.now.accepted[k] == at_.now.accepted[before] ? agree : differ;
+    ++count[k];
+    ++count[before];
+  }
+  std::vector<Selection> strays;
+  for (std::size_t k = 0; k < agree.size(); ++k) {
+    if (at_.now.accepted[k] && differ[k] > 0 && agree[k] == 0) {
+      strays.push_back({static_cast<Index>(k)});
+    }
+  }
+  return strays;
+}
+
+template class SlipTrials<Pose2>;
+template class SlipTrials<Pose3>;
+
+}  // namespace isotherm::slam::detail
