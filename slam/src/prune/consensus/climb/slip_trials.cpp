@@ -55,9 +55,9 @@ bool SlipTrials<Pose>::for_all_of(const Selection& loops, bool accepted) {
     std::fill(at_.dropped.begin(), at_.dropped.end(), false);
     at_.take_as(loops, accepted);
     at_.assess();
-    if (accepted && !at_.try_best_slips(0.0) && !elsewhere(loops.front())) return false;
+    const bool slips = !accepted || at_.try_best_slips(0.0) || elsewhere(loops.front());
     Explanation<Pose> best = at_.now;
-    while (at_.now.evidence <= least && (at_.try_best_slips(0.0) || moves_.shift())) {
+    while (slips && at_.now.evidence <= least && (at_.try_best_slips(0.0) || moves_.shift())) {
       const bool still = at_.now.accepted[loops.front()] == accepted;
       if (still && at_.now.evidence > best.evidence) best = at_.now;
     }
