@@ -67,8 +67,9 @@ Explanation<Pose> Climb<Pose>::climb() {
     before = at_.best.evidence;
     std::fill(at_.dropped.begin(), at_.dropped.end(), false);
     const Explanation<Pose>* known = grow();
-    if (known != nullptr && known->evidence >= at_.best.evidence)
+    if (known != nullptr && known->evidence >= at_.best.evidence) {
       return at_.peaks.end_at_known(*known);
+    }
   } while (at_.best.evidence > before + kBetter);
   at_.peaks.end_at(at_.best);
   return at_.best;
