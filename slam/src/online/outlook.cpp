@@ -32,9 +32,7 @@ Outlook<Pose>::Outlook(const EdgeLog<Pose>& log, const Snapshot<Pose>& map,
     : log_(log),
       map_(map),
       window_(options.window),
-      covariance_(map.assessment().estimate().factor()) {
-  prior_ = labels().log_odds(LabelCounts::kFirst);
-}
+      covariance_(map.assessment().estimate().factor()) {}
 
 // Back along the steps that came since, to a vertex of the map or one that is known from there.
 template <class Pose>
@@ -162,7 +160,7 @@ Standing Outlook<Pose>::standing(Index edge) const {
     standing.parts.second = 1;
   }
   standing.evidence = density - log_alternative(edge);
-  standing.log_odds = standing.evidence + prior_;
+  standing.log_odds = standing.evidence + prior();
   return standing;
 }
 
@@ -170,7 +168,7 @@ template <class Pose>
 double Outlook<Pose>::chi2_at_even_odds(Index edge) const {
   const Matrix Sigma = map_.best().scale.loops * told(edge).learnt;
   const double density = log_normal<Pose>(Pose::Tangent::Zero(), Sigma);
-  return std::max(2.0 * (density - log_alternative(edge) + prior_), 0.0);
+  return std::max(2.0 * (density - log_alternative(edge) + prior()), 0.0);
 }
 
 template <class Pose>

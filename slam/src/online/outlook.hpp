@@ -55,6 +55,9 @@ class Outlook {
     UncertainPose<Pose> at;  // from the node
   };
 
+  // The log odds of the first of a run being true.
+  double prior() const { return labels().log_odds(LabelCounts::kFirst); }
+
   std::optional<Place> place(VertexId id) const;
   std::optional<Place> known_place(VertexId id) const;
   std::optional<UncertainPose<Pose>> steps(VertexId from, VertexId to, bool on_map) const;
@@ -90,7 +93,6 @@ class Outlook {
   const Snapshot<Pose>& map_;
   Index window_;
   spectral::BranchCovariance<Pose::kDof> covariance_;
-  double prior_ = 0.0;                                  // log odds of the first of a run being true
   mutable std::unordered_map<VertexId, Place> places_;  // that were asked for
 };
 

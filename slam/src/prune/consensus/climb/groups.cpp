@@ -63,9 +63,7 @@ std::vector<Group> groups_of(const Assessment<Pose>& assessment, const Explanati
         *std::ranges::max_element(loops, {}, [&](Index k) { return standings[k].evidence; });
     double gain = assessment.log_prior_odds(now, loops);
     for (const Index k : loops) {
-      const Index before = runs.before(k);
-      const bool led =
-          k != seed && before != Runs<Pose>::kNone && std::ranges::binary_search(loops, before);
+      const bool led = k != seed && std::ranges::binary_search(loops, runs.before(k));
       const double own = standings[k].evidence;
       gain += led ? std::max(own, assessment.log_led(k)) : own;
     }

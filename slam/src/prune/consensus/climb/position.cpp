@@ -116,10 +116,7 @@ bool Position<Pose>::outdoes(double evidence) {
 
 template <class Pose>
 bool Position<Pose>::find_slips() {
-  if (!calibrate_ || failed_[Trial::slips]) return false;
-  const bool found = take_slips(0.0);
-  failed_[Trial::slips] = !found;
-  return found;
+  return calibrate_ && once(Trial::slips, [this] { return take_slips(0.0); });
 }
 
 template <class Pose>

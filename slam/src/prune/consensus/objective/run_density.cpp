@@ -11,16 +11,16 @@ std::vector<double> run_density(const Runs<Pose>& runs, const ReducedGraph<Pose>
                                 const ReducedGraph<Pose>& stated, const CovarianceScale& scale,
                                 const ScaleMixture& mixture, const std::vector<bool>& accepted,
                                 int threads) {
-  const auto loops = forward_loops(graph, {});
-  const auto as_stated = forward_loops(stated, {});
-  std::vector<double> densities(loops.size(), 0.0);
-  parallel_for_each(loops.size(), threads, [&](std::size_t k) {
+  std::vector<double> densities(graph.loops.size(), 0.0);
+  parallel_for_each(densities.size(), threads, [&](std::size_t k) {
     const Index before = runs.before(static_cast<Index>(k));
     if (before == Runs<Pose>::kNone || (accepted[k] && accepted[before])) return;
-    ForwardLoop<Pose> known = loops[before];
+    ForwardLoop<Pose> known = forward_loop(graph, graph.loops[before], {});
     known.measured.covariance *= scale.loops;
-    const auto belief = pair_belief(graph, scale, known, loops[k]);
-    const OwnError<Pose> own{loops[k].measured.covariance, as_stated[k].measured.covariance};
+    const auto loop = forward_loop(graph, graph.loops[k], {});
+    const auto belief = pair_belief(graph, scale, known, loop);
+    const auto as_stated = forward_loop(stated, stated.loops[k], {});
+    const OwnError<Pose> own{loop.measured.covariance, as_stated.measured.covariance};
     densities[k] = loop_gain<Pose>(belief, own, mixture).log_density;
   });
   return densities;

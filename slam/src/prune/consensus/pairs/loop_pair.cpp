@@ -16,20 +16,21 @@ UncertainPose<Pose> along(const ReducedGraph<Pose>& graph, const CovarianceScale
 }  // namespace
 
 template <class Pose>
+ForwardLoop<Pose> forward_loop(const ReducedGraph<Pose>& graph, const Link<Pose>& loop,
+                               const CovarianceScale& scale) {
+  const Index a = graph.vertex[loop.a];
+  const Index b = graph.vertex[loop.b];
+  const UncertainPose<Pose> measured{loop.T_a_b, loop.covariance * scale.loops};
+  if (graph.is_forward(loop)) return {a, b, measured};
+  return {b, a, inverse(measured)};
+}
+
+template <class Pose>
 std::vector<ForwardLoop<Pose>> forward_loops(const ReducedGraph<Pose>& graph,
                                              const CovarianceScale& scale) {
   std::vector<ForwardLoop<Pose>> loops;
   loops.reserve(graph.loops.size());
-  for (const auto& loop : graph.loops) {
-    const Index a = graph.vertex[loop.a];
-    const Index b = graph.vertex[loop.b];
-    const UncertainPose<Pose> measured{loop.T_a_b, loop.covariance * scale.loops};
-    if (a <= b) {
-      loops.push_back({a, b, measured});
-    } else {
-      loops.push_back({b, a, inverse(measured)});
-    }
-  }
+  for (const auto& loop : graph.loops) loops.push_back(forward_loop(graph, loop, scale));
   return loops;
 }
 
@@ -57,6 +58,10 @@ PairResidual<Pose> pair_residual(const ReducedGraph<Pose>& graph, const Covarian
   return {r, measured.measured.covariance + P};
 }
 
+template ForwardLoop<Pose2> forward_loop(const ReducedGraph<Pose2>&, const Link<Pose2>&,
+                                         const CovarianceScale&);
+template ForwardLoop<Pose3> forward_loop(const ReducedGraph<Pose3>&, const Link<Pose3>&,
+                                         const CovarianceScale&);
 template std::vector<ForwardLoop<Pose2>> forward_loops(const ReducedGraph<Pose2>&,
                                                        const CovarianceScale&);
 template std::vector<ForwardLoop<Pose3>> forward_loops(const ReducedGraph<Pose3>&,

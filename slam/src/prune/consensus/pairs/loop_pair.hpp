@@ -16,7 +16,12 @@ struct ForwardLoop {
   UncertainPose<Pose> measured;  ///< T_from_to
 };
 
-/// Every loop of `graph`, in order, with its covariance calibrated.
+/// A loop of `graph`, with its covariance calibrated.
+template <class Pose>
+ForwardLoop<Pose> forward_loop(const ReducedGraph<Pose>& graph, const Link<Pose>& loop,
+                               const CovarianceScale& scale);
+
+/// Every loop of `graph`, in order.
 template <class Pose>
 std::vector<ForwardLoop<Pose>> forward_loops(const ReducedGraph<Pose>& graph,
                                              const CovarianceScale& scale);
