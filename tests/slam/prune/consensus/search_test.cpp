@@ -213,21 +213,51 @@ TEST(Search, OnASampleFindsWhatClimbsFromEachStartFind) {
   EXPECT_EQ(found.front().accepted, accepted);
 }
 
-// Translations and rotations of odometry as far from stated as their prior lets them.
+// Translations and rotations of odometry as far from stated as their prior lets them, and loops
+// that are false.
 TEST(Search, FindsNoLessThanKnowingTheLoopsWould) {
   for (const std::uint64_t seed : {1, 2, 3, 4}) {
     Random random(seed);
-    auto made = random_loop_graph<Pose2>(random, 120, 40, 1.0);
-    for (auto& constraint : made.graph.constraints) {
+    const auto made = random_loop_graph<Pose2>(random, 120, 40, 1.0);
+    auto graph =
+        corrupt(made.graph, made.truth, {.type = NoiseType::random, .count = 20, .seed = seed})
+            .graph;
+    for (auto& constraint : graph.constraints) {
       if (constraint.to == constraint.from + 1) constraint.information(2, 2) *= 100.0;
     }
-    const Objective<Pose2> objective(made.graph, edge_roles(made.graph), kWindow);
+    const Objective<Pose2> objective(graph, edge_roles(graph), kWindow);
     Climb<Pose2> climb(objective, kOptions, kSilent);
     const auto found = search(climb).front();
     climb_from_each_start(true, [&](const CovarianceScale& start) {
       EXPECT_GE(found.evidence, climb.settled_on(found.accepted, start).evidence - kBetter);
     });
   }
+}
+
+TEST(Search, EndsWithTheFirstClimbThatLeavesNoLoopInDoubt) {
+  const auto city = simulate_city({.poses = 600, .measurements = {.loops = 150}, .seed = 3});
+  const Objective<Pose2> objective(city.graph, edge_roles(city.graph), kWindow);
+  Climb<Pose2> first(objective, kOptions, kSilent);
+  const auto peak = first.from(CovarianceScale{});
+  ASSERT_TRUE(first.none_in_doubt(peak));
+  Climb<Pose2> climb(objective, kOptions, kSilent);
+  const auto found = search(climb);
+  EXPECT_EQ(climb.moves().size(), first.moves().size());
+  EXPECT_TRUE(found.front().accepts_all());
+  EXPECT_GE(found.front().evidence, peak.evidence);
+  EXPECT_GE(found.front().evidence,
+            climb.settled_on(found.front().accepted, {}).evidence - kBetter);
+}
+
+TEST(Search, DoesNotEndWhereALoopIsInDoubt) {
+  const auto city = simulate_city({.poses = 600, .measurements = {.loops = 150}, .seed = 3});
+  const auto bad = corrupt(city.graph, city.truth, {.type = NoiseType::random, .count = 1});
+  const Objective<Pose2> objective(bad.graph, edge_roles(bad.graph), kWindow);
+  Climb<Pose2> first(objective, kOptions, kSilent);
+  ASSERT_FALSE(first.none_in_doubt(first.from(CovarianceScale{})));
+  Climb<Pose2> climb(objective, kOptions, kSilent);
+  search(climb);
+  EXPECT_GT(climb.moves().size(), first.moves().size());
 }
 
 TEST(Search, NotToTheLastEndsWithAClimbThatExplainsAll) {

@@ -16,6 +16,7 @@ namespace isotherm::slam::detail {
 namespace {
 
 constexpr int kMostVain = 8;  // moves in a row that find nothing better
+constexpr double kWorthTelling = 0.1 * kBetter;  // of scales that change no verdict
 
 bool is_part(const std::vector<bool>& part, const std::vector<bool>& whole) {
   for (std::size_t k = 0; k < part.size(); ++k) {
@@ -100,6 +101,11 @@ void Climb<Pose>::stand_at(const Explanation<Pose>& found) {
 }
 
 template <class Pose>
+bool Climb<Pose>::none_in_doubt(const Explanation<Pose>& found) const {
+  return found.accepts_all() && found.least_odds() >= 2.0 * log_odds_of(1.0 - options_.significance);
+}
+
+template <class Pose>
 Explanation<Pose> Climb<Pose>::slipping(const Explanation<Pose>& found) {
   doubted_.clear();
   const bool hidden = any_is_worse(found);
@@ -114,6 +120,14 @@ Explanation<Pose> Climb<Pose>::slipping(const Explanation<Pose>& found) {
   const bool disbelieved = rejected && trials.for_strays();
   doubted_ = std::move(trials).doubted();
   return unhidden || believed || disbelieved ? climb() : found;
+}
+
+template <class Pose>
+Explanation<Pose> Climb<Pose>::refined(const Explanation<Pose>& found) {
+  stand_at(found);
+  while (at_.learn_more_than(0.0, kWorthTelling)) {
+  }
+  return at_.now;
 }
 
 // Grows to them first, the most certain before the rest, so that poses come near.
@@ -213,6 +227,7 @@ void Climb<Pose>::stand_on(Standpoint<Pose> standpoint) {
 template <class Pose>
 void Climb<Pose>::begin() {
   drawn_from_ = 0;
+  weighed_afar_.clear();
   at_.begin();
 }
 
@@ -238,10 +253,14 @@ const Explanation<Pose>* Climb<Pose>::grow() {
   return nullptr;
 }
 
-// False where no move is left.
+// False where no move is left, or none that is sought.
 template <class Pose>
 bool Climb<Pose>::move() {
-  return shift() || at_.learn_more_than(0.0) || weigh_anew() || at_.find_slips() ||
+  if (shift() || at_.learn_more_than(0.0)) return true;
+  const bool highest = at_.now.evidence >= at_.best.evidence &&
+                       at_.peaks.none_above(at_.now.evidence);
+  if (!to_the_last_ && highest && none_in_doubt(at_.now)) return false;
+  return weigh_anew() || at_.find_slips() ||
          at_.once(Trial::undecided, [this] { return accept_undecided(); }) ||
          at_.once(Trial::doubtful, [this] { return drop_undecided(); });
 }
@@ -280,11 +299,14 @@ bool Climb<Pose>::weigh_by_others() {
 
 // Lessons hold residuals. Where some loops are taken for exact the map bends to them, and odometry
 // or the other loops have all the errors: what can be learnt of where all loops are taken for as
-// accurate as the worst is to explain them better.
+// accurate as the worst is to explain them better. Once of the same loops: from there scales are
+// learnt anew.
 template <class Pose>
 bool Climb<Pose>::weigh_afar() {
   const auto [factor, shares] = all_as_worst(at_.now.shares);
   if (!options_.calibrate || !looks_afar_ || !at_.now.tells_of_scales()) return false;
+  if (at_.now.accepted == weighed_afar_) return false;
+  weighed_afar_ = at_.now.accepted;
   const Lesson<Pose> wider{
       {at_.now.scale.odometry, at_.now.scale.loops * factor}, at_.now.shapes, shares};
   return std::log(wider.scale.loops) < kMostScale &&
@@ -293,8 +315,7 @@ bool Climb<Pose>::weigh_afar() {
 
 template <class Pose>
 bool Climb<Pose>::weigh_anew() {
-  return at_.once(Trial::weights_by_others, [this] { return weigh_by_others(); }) ||
-         at_.once(Trial::afar, [this] { return weigh_afar(); });
+  return at_.once(Trial::weights_by_others, [this] { return weigh_by_others(); }) || weigh_afar();
 }
 
 // All loops that are not false beyond doubt, by twice the log odds that a verdict takes: where a

@@ -45,8 +45,15 @@ class Climb {
   /// takes less time.
   void look_afar(bool looks) { looks_afar_ = looks; }
 
+  /// Whether climbs go on from where no loop is in doubt, to what explains the same loops better:
+  /// it changes no verdict.
+  void go_to_the_last(bool goes) { to_the_last_ = goes; }
+
   /// See Assessment.
   void hold_nearness(bool held) { at_.assessment.hold_nearness(held); }
+
+  /// Whether all loops are true in what was found, each by twice the log odds that a verdict takes.
+  bool none_in_doubt(const Explanation<Pose>& found) const;
 
   /// Goes back to an explanation that was found.
   void stand_at(const Explanation<Pose>& found);
@@ -62,6 +69,9 @@ class Climb {
   /// What explains best that loops are true, or false, which odometry would have to slip otherwise
   /// for, but worse than what was found: of the last call of slipping().
   const std::vector<Explanation<Pose>>& doubted() const noexcept { return doubted_; }
+
+  /// The same loops at scales that are learnt to a tenth of what a move is worth.
+  Explanation<Pose> refined(const Explanation<Pose>& found);
 
   /// What explains best that exactly these loops are true, from `start`.
   Explanation<Pose> settled_on(const std::vector<bool>& accepted, const CovarianceScale& start);
@@ -117,6 +127,8 @@ class Climb {
   std::vector<Explanation<Pose>> doubted_;
   std::size_t drawn_from_ = 0;  // loops, when the map was last drawn anew
   bool looks_afar_ = true;
+  bool to_the_last_ = true;
+  std::vector<bool> weighed_afar_;  // loops that were accepted then
   std::vector<ConsensusMove> moves_;
   bool settled_ = true;
 };

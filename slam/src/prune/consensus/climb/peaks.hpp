@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "prune/consensus/objective/objective.hpp"
@@ -11,6 +12,11 @@ template <class Pose>
 class Peaks {
  public:
   const std::vector<Explanation<Pose>>& all() const noexcept { return peaks_; }
+
+  /// Whether no climb before has ended higher.
+  bool none_above(double evidence) const {
+    return std::ranges::all_of(peaks_, [&](const auto& peak) { return peak.evidence <= evidence; });
+  }
 
   /// The present climb was there.
   void pass(const Explanation<Pose>& now);

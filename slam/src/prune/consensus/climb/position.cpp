@@ -87,15 +87,15 @@ void Position<Pose>::go_back(const Place& place) {
 }
 
 template <class Pose>
-bool Position<Pose>::learn_more_than(double gain) {
+bool Position<Pose>::learn_more_than(double gain, double worth) {
   if (!calibrate_) return false;
   learnt_from_ = std::max<std::size_t>(now.accepted_count(), 1);
-  const double least = std::max(gain, kBetter);
+  const double least = std::max(gain, worth);
   for (const Trial trial : {Trial::lesson, Trial::lesson_of_scales}) {
     if (failed_[trial]) continue;
     const Lesson<Pose> found = learn(assessment, now, trial == Trial::lesson_of_scales);
     if (found.gain <= least) continue;
-    if (try_with(scales_of(found))) return true;
+    if (try_with(scales_of(found), {.gain = worth})) return true;
     failed_[trial] = true;
     if (found.shapes.is_about(now.shapes)) failed_[Trial::lesson_of_scales] = true;
   }

@@ -45,7 +45,6 @@ class Position {
     slips,
     level,
     weights_by_others,
-    afar,
     undecided,
     doubtful,
     trials
@@ -75,8 +74,8 @@ class Position {
   /// Loops that are neither accepted nor dropped.
   std::vector<bool> open() const;
 
-  /// Whether there was anything to learn that gains more than this.
-  bool learn_more_than(double gain);
+  /// Whether there was anything to learn that gains more than this, and what is `worth` a move.
+  bool learn_more_than(double gain, double worth = kBetter);
 
   /// How many loops were accepted at the last lesson.
   std::size_t learnt_from() const noexcept { return learnt_from_; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -50,6 +51,13 @@ struct Explanation {
   }
 
   bool accepts_all() const { return accepted_count() == accepted.size(); }
+
+  /// log odds of the loop least likely to be true.
+  double least_odds() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Standing& standing : standings) least = std::min(least, standing.log_odds);
+    return least;
+  }
 
   /// Whether any number measured is left to tell how accurate measurements are.
   bool tells_of_scales() const { return redundancy.odometry.sum() + redundancy.loops.sum() >= 1.0; }

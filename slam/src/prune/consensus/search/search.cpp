@@ -95,16 +95,20 @@ void settle_anew(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
 template <class Pose>
 std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   const bool calibrate = climb.options().calibrate;
-  std::vector<Explanation<Pose>> found;
-  const auto all_explained = [&found] {
-    return std::ranges::any_of(found, [](const auto& peak) { return peak.accepts_all(); });
-  };
-  const auto try_from = [&](const auto& start) {
-    if (depth.to_the_last || !all_explained()) found.push_back(climb.from(start));
-  };
   const std::vector<Index> sampled = sample_of(climb, depth.sample_soon);
   const bool at_once = sampled.empty();
+  const bool to_the_last = at_once && depth.to_the_last;
   climb.look_afar(at_once);
+  climb.go_to_the_last(to_the_last);
+  std::vector<Explanation<Pose>> found;
+  const auto all_explained = [&] {
+    if (found.empty()) return false;
+    const auto& best = best_of(found);
+    return to_the_last ? climb.none_in_doubt(best) : best.accepts_all();
+  };
+  const auto try_from = [&](const auto& start) {
+    if (!all_explained()) found.push_back(climb.from(start));
+  };
   for (const auto& standpoint : standpoints(climb, sampled, depth.sample_soon)) {
     unless_it_breaks_down(try_from, standpoint);
   }
@@ -116,9 +120,9 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
                        found, [&](const auto& peak) { return peak.evidence <= none->evidence; });
   };
   if (astray()) climb_from_each_start(calibrate, try_from);
-  // Of thousands of loops that are all explained a slip would change no verdict, nor of a sample.
-  const bool to_the_last = (depth.to_the_last && at_once) || !all_explained();
-  if (calibrate && to_the_last && !astray()) {
+  if (all_explained()) {
+    if (to_the_last) found.push_back(climb.refined(best_of(found)));
+  } else if (calibrate && !astray()) {
     const auto slip = [&](const auto& best) { found.push_back(climb.slipping(best)); };
     unless_it_breaks_down(slip, best_of(found));
     found.insert(found.end(), climb.doubted().begin(), climb.doubted().end());
