@@ -83,6 +83,9 @@ MOVES = {
     "the map drawn anew": (CLIMB, "::draw_anew() {\n", "if ({off}) return;"),
     "climbs ended where an earlier one passed": (CLIMB, "::peak_ahead(bool learnt) {\n",
                                                  "if ({off}) return nullptr;"),
+    "the search ended where no loop is in doubt":
+        (CLIMB, "::none_in_doubt(const Explanation<Pose>& found) const {\n",
+         "if ({off}) return false;"),
     "scales settled anew":
         ("search/search.cpp", "void settle_anew(Climb<Pose>& climb, "
          "std::vector<Explanation<Pose>>& found) {\n", "if ({off}) return;"),
