@@ -57,7 +57,7 @@ std::vector<bool> Position<Pose>::open() const {
 
 template <class Pose>
 bool Position<Pose>::all_or_nothing(const std::function<bool()>& moves) {
-  const Place before{now, assessment.findings(), failed_};
+  const Place before{now, assessment.findings(), failed_, dropped};
   bool better = false;
   try {
     better = moves();
@@ -84,6 +84,7 @@ void Position<Pose>::go_back(const Place& place) {
   now = place.now;
   assessment.restore(now, place.found);
   failed_ = place.failed;
+  dropped = place.dropped;
 }
 
 template <class Pose>

@@ -111,6 +111,7 @@ class Position {
     Explanation<Pose> now;
     typename Assessment<Pose>::Findings found;
     std::array<bool, trials> failed;
+    std::vector<bool> dropped;
   };
 
   void go_back(const Place& place);

@@ -51,11 +51,11 @@ Belief<Pose> pair_belief(const ReducedGraph<Pose>& graph, const CovarianceScale&
 }
 
 template <class Pose>
-PairResidual<Pose> pair_residual(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
-                                 const ForwardLoop<Pose>& known,
-                                 const ForwardLoop<Pose>& measured) {
-  const auto [r, P] = pair_belief(graph, scale, known, measured);
-  return {r, measured.measured.covariance + P};
+Belief<Pose> pair_residual(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
+                           const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured) {
+  auto belief = pair_belief(graph, scale, known, measured);
+  belief.P += measured.measured.covariance;
+  return belief;
 }
 
 template ForwardLoop<Pose2> forward_loop(const ReducedGraph<Pose2>&, const Link<Pose2>&,
@@ -72,9 +72,9 @@ template Belief<Pose2> pair_belief(const ReducedGraph<Pose2>&, const CovarianceS
                                    const ForwardLoop<Pose2>&, const ForwardLoop<Pose2>&);
 template Belief<Pose3> pair_belief(const ReducedGraph<Pose3>&, const CovarianceScale&,
                                    const ForwardLoop<Pose3>&, const ForwardLoop<Pose3>&);
-template PairResidual<Pose2> pair_residual(const ReducedGraph<Pose2>&, const CovarianceScale&,
-                                           const ForwardLoop<Pose2>&, const ForwardLoop<Pose2>&);
-template PairResidual<Pose3> pair_residual(const ReducedGraph<Pose3>&, const CovarianceScale&,
-                                           const ForwardLoop<Pose3>&, const ForwardLoop<Pose3>&);
+template Belief<Pose2> pair_residual(const ReducedGraph<Pose2>&, const CovarianceScale&,
+                                     const ForwardLoop<Pose2>&, const ForwardLoop<Pose2>&);
+template Belief<Pose3> pair_residual(const ReducedGraph<Pose3>&, const CovarianceScale&,
+                                     const ForwardLoop<Pose3>&, const ForwardLoop<Pose3>&);
 
 }  // namespace isotherm::slam::detail

@@ -45,16 +45,9 @@ template <class Pose>
 Belief<Pose> pair_belief(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
                          const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured);
 
-/// A loop's residual under another one, and its covariance.
+/// The same with the error of `measured`, too.
 template <class Pose>
-struct PairResidual {
-  typename Pose::Tangent r;
-  typename Pose::Matrix S;
-};
-
-/// With the error of `measured`, too.
-template <class Pose>
-PairResidual<Pose> pair_residual(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
-                                 const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured);
+Belief<Pose> pair_residual(const ReducedGraph<Pose>& graph, const CovarianceScale& scale,
+                           const ForwardLoop<Pose>& known, const ForwardLoop<Pose>& measured);
 
 }  // namespace isotherm::slam::detail
