@@ -100,6 +100,8 @@ def instrument(tree):
     read_from_environment(room / "constants.hpp", CONSTANTS)
     # What follows from them is no longer known to the compiler.
     replace(room / "climb/learn.cpp", [("constexpr double kMostApart", "const double kMostApart")])
+    replace(room / "climb/climb.cpp",
+            [("constexpr double kWorthTelling", "const double kWorthTelling")])
     replace(room / "objective/scale_prior.hpp",
             [("inline constexpr double kMostScale", "inline const double kMostScale")])
     replace(room / "objective/error_scales.cpp",

@@ -1,6 +1,7 @@
 """A copy of the sources in which constants are read from the environment when the program starts."""
 
 import dataclasses
+import filecmp
 import re
 import shutil
 import subprocess
@@ -44,15 +45,25 @@ def replace(path, pairs):
 
 
 def build(folder, instrument):
-    """The command, of a copy of the sources in `folder` that `instrument` has changed."""
-    tree = folder / "tree"
-    if not tree.exists():
-        files = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True,
-                               check=True).stdout.split("\0")
-        for name in filter(None, files):
-            (tree / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(ROOT / name, tree / name)
-        instrument(tree)
+    """The command, of a copy of the sources in `folder` that `instrument` has changed.
+
+    What is as it was the last time keeps its date, so that it is not compiled again.
+    """
+    tree, before = folder / "tree", folder / "before"
+    if tree.exists():
+        tree.rename(before)
+    files = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True,
+                           check=True).stdout.split("\0")
+    for name in filter(None, files):
+        (tree / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, tree / name)
+    instrument(tree)
+    if before.exists():
+        for name in filter(lambda name: name and (before / name).exists(), files):
+            if filecmp.cmp(before / name, tree / name, shallow=False):
+                shutil.copystat(before / name, tree / name)
+        (before / "build").rename(tree / "build")
+        shutil.rmtree(before)
     subprocess.run([tree / "scripts/build.sh", "release"], check=True)
     return tree / "build/release/apps/isotherm"
 

@@ -67,10 +67,12 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole,
   if (!can_refute(found.front().accepted_count())) return standpoints;
   const double least = found.front().evidence - log_odds_of(1.0 - whole.options().significance);
   const KnownBefore known = known_of(sampled, all.loops.size());
-  for (const auto& peak : found) {
-    if (peak.evidence < least) break;
+  const auto carry_over = [&](const auto& peak) {
     climb.stand_at(peak);
     standpoints.push_back(carry(peak, climb.assessment().findings(), objective, known));
+  };
+  for (const auto& peak : found) {
+    if (peak.evidence >= least) unless_it_breaks_down(carry_over, peak);
   }
   return standpoints;
 }
@@ -121,7 +123,8 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   };
   if (astray()) climb_from_each_start(calibrate, try_from);
   if (all_explained()) {
-    if (to_the_last) found.push_back(climb.refined(best_of(found)));
+    const auto refine = [&](const auto& best) { found.push_back(climb.refined(best)); };
+    if (to_the_last) unless_it_breaks_down(refine, best_of(found));
   } else if (calibrate && !astray()) {
     const auto slip = [&](const auto& best) { found.push_back(climb.slipping(best)); };
     unless_it_breaks_down(slip, best_of(found));
