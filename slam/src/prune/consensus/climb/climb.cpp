@@ -227,7 +227,6 @@ void Climb<Pose>::stand_on(Standpoint<Pose> standpoint) {
 template <class Pose>
 void Climb<Pose>::begin() {
   drawn_from_ = 0;
-  weighed_afar_.clear();
   at_.begin();
 }
 
@@ -299,14 +298,11 @@ bool Climb<Pose>::weigh_by_others() {
 
 // Lessons hold residuals. Where some loops are taken for exact the map bends to them, and odometry
 // or the other loops have all the errors: what can be learnt of where all loops are taken for as
-// accurate as the worst is to explain them better. Once of the same loops: from there scales are
-// learnt anew.
+// accurate as the worst is to explain them better.
 template <class Pose>
 bool Climb<Pose>::weigh_afar() {
   const auto [factor, shares] = all_as_worst(at_.now.shares);
   if (!options_.calibrate || !looks_afar_ || !at_.now.tells_of_scales()) return false;
-  if (at_.now.accepted == weighed_afar_) return false;
-  weighed_afar_ = at_.now.accepted;
   const Lesson<Pose> wider{
       {at_.now.scale.odometry, at_.now.scale.loops * factor}, at_.now.shapes, shares};
   return std::log(wider.scale.loops) < kMostScale &&
@@ -315,7 +311,8 @@ bool Climb<Pose>::weigh_afar() {
 
 template <class Pose>
 bool Climb<Pose>::weigh_anew() {
-  return at_.once(Trial::weights_by_others, [this] { return weigh_by_others(); }) || weigh_afar();
+  return at_.once(Trial::weights_by_others, [this] { return weigh_by_others(); }) ||
+         at_.once(Trial::afar, [this] { return weigh_afar(); });
 }
 
 // All loops that are not false beyond doubt, by twice the log odds that a verdict takes: where a

@@ -128,7 +128,6 @@ class Climb {
   std::size_t drawn_from_ = 0;  // loops, when the map was last drawn anew
   bool looks_afar_ = true;
   bool to_the_last_ = true;
-  std::vector<bool> weighed_afar_;  // loops that were accepted then
   std::vector<ConsensusMove> moves_;
   bool settled_ = true;
 };

@@ -45,6 +45,7 @@ class Position {
     slips,
     level,
     weights_by_others,
+    afar,
     undecided,
     doubtful,
     trials
