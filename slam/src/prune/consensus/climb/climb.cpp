@@ -15,7 +15,7 @@
 namespace isotherm::slam::detail {
 namespace {
 
-constexpr int kMostVain = 8;  // moves in a row that find nothing better
+constexpr int kMostVain = 8;                     // moves in a row that find nothing better
 constexpr double kWorthTelling = 0.1 * kBetter;  // of scales that change no verdict
 
 bool is_part(const std::vector<bool>& part, const std::vector<bool>& whole) {
@@ -102,7 +102,8 @@ void Climb<Pose>::stand_at(const Explanation<Pose>& found) {
 
 template <class Pose>
 bool Climb<Pose>::none_in_doubt(const Explanation<Pose>& found) const {
-  return found.accepts_all() && found.least_odds() >= 2.0 * log_odds_of(1.0 - options_.significance);
+  return found.accepts_all() &&
+         found.least_odds() >= 2.0 * log_odds_of(1.0 - options_.significance);
 }
 
 template <class Pose>
@@ -256,8 +257,8 @@ const Explanation<Pose>* Climb<Pose>::grow() {
 template <class Pose>
 bool Climb<Pose>::move() {
   if (shift() || at_.learn_more_than(0.0)) return true;
-  const bool highest = at_.now.evidence >= at_.best.evidence &&
-                       at_.peaks.none_above(at_.now.evidence);
+  const bool highest =
+      at_.now.evidence >= at_.best.evidence && at_.peaks.none_above(at_.now.evidence);
   if (!to_the_last_ && highest && none_in_doubt(at_.now)) return false;
   return weigh_anew() || at_.find_slips() ||
          at_.once(Trial::undecided, [this] { return accept_undecided(); }) ||
