@@ -261,8 +261,7 @@ bool Climb<Pose>::move() {
       at_.now.evidence >= at_.best.evidence && at_.peaks.none_above(at_.now.evidence);
   if (!to_the_last_ && highest && none_in_doubt(at_.now)) return false;
   return weigh_anew() || at_.find_slips() ||
-         at_.once(Trial::undecided, [this] { return accept_undecided(); }) ||
-         at_.once(Trial::doubtful, [this] { return drop_undecided(); });
+         at_.once(Trial::undecided, [this] { return accept_undecided(); });
 }
 
 // The same at about these scales.
@@ -329,22 +328,12 @@ bool Climb<Pose>::accept_undecided() {
       loops.push_back(static_cast<Index>(k));
     }
   }
-  return try_all_as(loops, true);
-}
-
-// All runs of which a loop is not true beyond doubt: as long as the others of a run are accepted,
-// each fits.
-template <class Pose>
-bool Climb<Pose>::drop_undecided() {
-  const double most = log_odds_of(1.0 - options_.significance);
-  Selection out;
-  for (const Group& run : groups(at_.now.accepted)) {
-    const auto in_doubt = [&](Index k) { return at_.now.standings[k].log_odds < most; };
-    if (std::ranges::any_of(run.loops, in_doubt)) {
-      out.insert(out.end(), run.loops.begin(), run.loops.end());
-    }
-  }
-  return out.size() < at_.now.accepted_count() && try_all_as(out, false);
+  const auto change = [&](auto& now) {
+    for (const Index k : loops) now.accepted[k] = true;
+  };
+  if (loops.empty() || !at_.try_with(change, {.learning = true})) return false;
+  note(loops.size(), 0);
+  return true;
 }
 
 // Steps that do not settle may be on the way to another minimum than the least.
@@ -413,20 +402,6 @@ void Climb<Pose>::accept(const Selection& loops) {
   at_.take_as(loops, true);
   at_.assess();
   note(loops.size(), 0);
-}
-
-// Whether it gains that all of these are `accepted`, or none, or else nothing changes.
-template <class Pose>
-bool Climb<Pose>::try_all_as(const Selection& loops, bool accepted) {
-  const auto change = [&](auto& now) {
-    for (const Index k : loops) now.accepted[k] = accepted;
-  };
-  if (loops.empty() || !at_.try_with(change, {.learning = accepted})) return false;
-  if (!accepted) {
-    for (const Index k : loops) at_.dropped[k] = true;
-  }
-  note(accepted ? loops.size() : 0, accepted ? 0 : loops.size());
-  return true;
 }
 
 template <class Pose>

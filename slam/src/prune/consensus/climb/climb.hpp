@@ -107,12 +107,10 @@ class Climb {
   std::vector<Group> gaining_groups() const;
   Group next_batch() const;
   void accept(const Selection& loops);
-  bool try_all_as(const Selection& loops, bool accepted);
   bool weigh_anew();
   bool weigh_by_others();
   bool weigh_afar();
   bool accept_undecided();
-  bool drop_undecided();
   void draw_anew();
   void note(std::size_t accepted, std::size_t dropped);
   void tell_progress() const;

@@ -39,17 +39,7 @@ class Position {
   using Change = std::function<void(Explanation<Pose>&)>;
 
   /// Trials that are not repeated where they failed until something changes.
-  enum Trial {
-    lesson,
-    lesson_of_scales,
-    slips,
-    level,
-    weights_by_others,
-    afar,
-    undecided,
-    doubtful,
-    trials
-  };
+  enum Trial { lesson, lesson_of_scales, slips, level, weights_by_others, afar, undecided, trials };
 
   /// `objective` must outlive this object.
   Position(const Objective<Pose>& objective, bool calibrate, Pace pace, int threads);
