@@ -44,26 +44,26 @@ def replace(path, pairs):
     path.write_text(text, "utf-8")
 
 
+def copy(source, target, files):
+    for name in files:
+        (target / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(source / name, target / name)
+
+
 def build(folder, instrument):
     """The command, of a copy of the sources in `folder` that `instrument` has changed.
 
     What is as it was the last time keeps its date, so that it is not compiled again.
     """
-    tree, before = folder / "tree", folder / "before"
-    if tree.exists():
-        tree.rename(before)
-    files = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True,
-                           check=True).stdout.split("\0")
-    for name in filter(None, files):
-        (tree / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(ROOT / name, tree / name)
-    instrument(tree)
-    if before.exists():
-        for name in filter(lambda name: name and (before / name).exists(), files):
-            if filecmp.cmp(before / name, tree / name, shallow=False):
-                shutil.copystat(before / name, tree / name)
-        (before / "build").rename(tree / "build")
-        shutil.rmtree(before)
+    tree, fresh = folder / "tree", folder / "fresh"
+    shutil.rmtree(fresh, ignore_errors=True)
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True,
+                            check=True).stdout.split("\0")
+    files = [name for name in listed if name]
+    copy(ROOT, fresh, files)
+    instrument(fresh)
+    copy(fresh, tree, [name for name in files if not (tree / name).exists() or
+                       not filecmp.cmp(fresh / name, tree / name, shallow=False)])
     subprocess.run([tree / "scripts/build.sh", "release"], check=True)
     return tree / "build/release/apps/isotherm"
 

@@ -102,8 +102,7 @@ void Climb<Pose>::stand_at(const Explanation<Pose>& found) {
 
 template <class Pose>
 bool Climb<Pose>::none_in_doubt(const Explanation<Pose>& found) const {
-  return found.accepts_all() &&
-         found.least_odds() >= 2.0 * log_odds_of(1.0 - options_.significance);
+  return found.accepts_all() && found.least_odds() >= beyond_doubt();
 }
 
 template <class Pose>
@@ -257,9 +256,7 @@ const Explanation<Pose>* Climb<Pose>::grow() {
 template <class Pose>
 bool Climb<Pose>::move() {
   if (shift() || at_.learn_more_than(0.0)) return true;
-  const bool highest =
-      at_.now.evidence >= at_.best.evidence && at_.peaks.none_above(at_.now.evidence);
-  if (!to_the_last_ && highest && none_in_doubt(at_.now)) return false;
+  if (!to_the_last_ && at_.is_highest() && none_in_doubt(at_.now)) return false;
   return weigh_anew() || at_.find_slips() ||
          at_.once(Trial::undecided, [this] { return accept_undecided(); });
 }
@@ -315,23 +312,19 @@ bool Climb<Pose>::weigh_anew() {
          at_.once(Trial::afar, [this] { return weigh_afar(); });
 }
 
-// All loops that are not false beyond doubt, by twice the log odds that a verdict takes: where a
-// part of the map is off each of them speaks for itself alone, and against the map, which together
-// they may put right.
+// All loops that are not false beyond doubt: where a part of the map is off each of them speaks for
+// itself alone, and against the map, which together they may put right.
 template <class Pose>
 bool Climb<Pose>::accept_undecided() {
-  const double least = 2.0 * log_odds_of(options_.significance);
   Selection loops;
   for (std::size_t k = 0; k < at_.now.standings.size(); ++k) {
     if (!at_.now.accepted[k] && at_.now.standings[k].connected() &&
-        at_.now.standings[k].log_odds > least) {
+        at_.now.standings[k].log_odds > -beyond_doubt()) {
       loops.push_back(static_cast<Index>(k));
     }
   }
-  const auto change = [&](auto& now) {
-    for (const Index k : loops) now.accepted[k] = true;
-  };
-  if (loops.empty() || !at_.try_with(change, {.learning = true})) return false;
+  const auto take = [&](auto&) { at_.take_as(loops, true); };
+  if (loops.empty() || !at_.try_with(take, {.learning = true})) return false;
   note(loops.size(), 0);
   return true;
 }
@@ -381,13 +374,8 @@ void Climb<Pose>::drop(const Selection& loops) {
 }
 
 template <class Pose>
-std::vector<Group> Climb<Pose>::groups(const std::vector<bool>& among) const {
-  return groups_of(at_.assessment, at_.now, among);
-}
-
-template <class Pose>
 std::vector<Group> Climb<Pose>::gaining_groups() const {
-  auto all = groups(at_.open());
+  auto all = groups_of(at_.assessment, at_.now, at_.open());
   std::erase_if(all, [](const Group& group) { return group.gain <= 0.0; });
   return all;
 }

@@ -9,6 +9,7 @@
 #include "prune/consensus/climb/groups.hpp"
 #include "prune/consensus/climb/position.hpp"
 #include "prune/consensus/climb/standpoint.hpp"
+#include "prune/consensus/objective/log_odds.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -52,7 +53,7 @@ class Climb {
   /// See Assessment.
   void hold_nearness(bool held) { at_.assessment.hold_nearness(held); }
 
-  /// Whether all loops are true in what was found, each by twice the log odds that a verdict takes.
+  /// Whether all loops are true in what was found, each beyond doubt.
   bool none_in_doubt(const Explanation<Pose>& found) const;
 
   /// Goes back to an explanation that was found.
@@ -90,6 +91,8 @@ class Climb {
  private:
   using Trial = typename Position<Pose>::Trial;
 
+  // Twice the log odds that a verdict takes.
+  double beyond_doubt() const { return 2.0 * log_odds_of(1.0 - options_.significance); }
   Explanation<Pose> none_at(const CovarianceScale& scale) const;
   void start(Explanation<Pose> explanation);
   void stand_on(Standpoint<Pose> standpoint);
@@ -103,7 +106,6 @@ class Climb {
   Selection misfits() const;
   double gain_of_dropping(const Selection& loops) const;
   void drop(const Selection& loops);
-  std::vector<Group> groups(const std::vector<bool>& among) const;
   std::vector<Group> gaining_groups() const;
   Group next_batch() const;
   void accept(const Selection& loops);

@@ -60,6 +60,11 @@ class Position {
   /// Whether that gains as much, or else nothing changes.
   bool try_with(const Change& change, const TrialTerms<Pose>& terms = {});
 
+  /// Whether nothing higher was found, on the way or by an earlier climb.
+  bool is_highest() const {
+    return now.evidence >= best.evidence && peaks.none_above(now.evidence);
+  }
+
   void take_as(const Selection& loops, bool accepted);
 
   /// Loops that are neither accepted nor dropped.

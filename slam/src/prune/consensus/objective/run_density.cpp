@@ -15,8 +15,7 @@ std::vector<double> run_density(const Runs<Pose>& runs, const ReducedGraph<Pose>
   parallel_for_each(densities.size(), threads, [&](std::size_t k) {
     const Index before = runs.before(static_cast<Index>(k));
     if (before == Runs<Pose>::kNone || (accepted[k] && accepted[before])) return;
-    ForwardLoop<Pose> known = forward_loop(graph, graph.loops[before], {});
-    known.measured.covariance *= scale.loops;
+    const auto known = forward_loop(graph, graph.loops[before], scale);
     const auto loop = forward_loop(graph, graph.loops[k], {});
     const auto belief = pair_belief(graph, scale, known, loop);
     const auto as_stated = forward_loop(stated, stated.loops[k], {});

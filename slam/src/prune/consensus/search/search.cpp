@@ -92,6 +92,23 @@ void settle_anew(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
   found.push_back(settled_on_either_side(climb, best_of(found)));
 }
 
+// Whether the best does, and `to_the_last` leaves no loop in doubt.
+template <class Pose>
+bool explains_all(const Climb<Pose>& climb, const std::vector<Explanation<Pose>>& found,
+                  bool to_the_last) {
+  if (found.empty()) return false;
+  const auto& best = best_of(found);
+  return to_the_last ? climb.none_in_doubt(best) : best.accepts_all();
+}
+
+// The best that was found with slips of odometry that it hides, and what speaks for others.
+template <class Pose>
+void try_slips(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
+  const auto slip = [&](const auto& best) { found.push_back(climb.slipping(best)); };
+  unless_it_breaks_down(slip, best_of(found));
+  found.insert(found.end(), climb.doubted().begin(), climb.doubted().end());
+}
+
 }  // namespace
 
 template <class Pose>
@@ -103,11 +120,7 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   climb.look_afar(at_once);
   climb.go_to_the_last(to_the_last);
   std::vector<Explanation<Pose>> found;
-  const auto all_explained = [&] {
-    if (found.empty()) return false;
-    const auto& best = best_of(found);
-    return to_the_last ? climb.none_in_doubt(best) : best.accepts_all();
-  };
+  const auto all_explained = [&] { return explains_all(climb, found, to_the_last); };
   const auto try_from = [&](const auto& start) {
     if (!all_explained()) found.push_back(climb.from(start));
   };
@@ -122,13 +135,11 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
                        found, [&](const auto& peak) { return peak.evidence <= none->evidence; });
   };
   if (astray()) climb_from_each_start(calibrate, try_from);
-  if (all_explained()) {
+  if (calibrate && all_explained()) {
     const auto refine = [&](const auto& best) { found.push_back(climb.refined(best)); };
     if (to_the_last) unless_it_breaks_down(refine, best_of(found));
   } else if (calibrate && !astray()) {
-    const auto slip = [&](const auto& best) { found.push_back(climb.slipping(best)); };
-    unless_it_breaks_down(slip, best_of(found));
-    found.insert(found.end(), climb.doubted().begin(), climb.doubted().end());
+    try_slips(climb, found);
     if (at_once) settle_anew(climb, found);
   }
   for (const auto& [odometry, loops] : std::span(kStarts).subspan(kStartsAlways)) {

@@ -8,8 +8,8 @@ namespace isotherm::slam::detail {
 
 /// How far a search goes.
 struct SearchDepth {
-  /// Whether the search goes on until all loops are true beyond doubt, if they are, or else to all
-  /// that may explain them a little better. Otherwise it ends with what explains all.
+  /// Whether the search ends where no loop is in doubt, and else only with all that it knows to
+  /// try. Otherwise it ends as soon as all loops are accepted.
   bool to_the_last = true;
   /// Whether a sample is as many of the loops as make one, where a tenth of them are too few.
   bool sample_soon = false;
