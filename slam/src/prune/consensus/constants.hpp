@@ -40,19 +40,25 @@ inline constexpr std::size_t kFewLoops = 5;
 
 // The search.
 
-/// Factors on the stated covariances of odometry and of loops to start from. What is true agrees
-/// best: a climb that starts from sharper loops than stated is not drawn to false ones first. The
-/// first four always, the others until one leads anywhere: of errors that are all stated a hundred
-/// times too small no loop agrees with the next.
-inline constexpr std::array<std::array<double, 2>, 9> kStarts = {{{1.0, 1.0},
-                                                                  {100.0, 1.0},
-                                                                  {1.0, 0.01},
-                                                                  {0.01, 0.01},
-                                                                  {100.0, 100.0},
-                                                                  {1.0, 100.0},
-                                                                  {0.01, 1.0},
-                                                                  {100.0, 0.01},
-                                                                  {0.01, 100.0}}};
+/// Factors on the stated covariances of odometry and of loops to start from, and whether they are
+/// taken for `known` until no more loop agrees with them: either loops agree with odometry, at one
+/// of these scales, or with each other, those best that are true, so that loops sharper than stated
+/// are not drawn to false ones first. The first four always, the others until one leads anywhere:
+/// of errors that are all stated a hundred times too small no loop agrees with the next.
+struct StartScales {
+  double odometry;
+  double loops;
+  bool known;
+};
+inline constexpr std::array<StartScales, 9> kStarts = {{{1.0, 1.0, true},
+                                                        {100.0, 1.0, true},
+                                                        {1.0, 0.01, false},
+                                                        {0.01, 0.01, true},
+                                                        {100.0, 100.0, false},
+                                                        {1.0, 100.0, false},
+                                                        {0.01, 1.0, false},
+                                                        {100.0, 0.01, false},
+                                                        {0.01, 100.0, false}}};
 inline constexpr std::size_t kStartsAlways = 4;
 
 /// Loops in a sample at least: half of them false, the rest tell the log of a scale to within .1.

@@ -69,7 +69,7 @@ TYPED_TEST(CarryOf, OfAllLoopsStandsWhereItStood) {
   const auto made = random_loop_graph<Pose>(random, 80, 40, 1.0);
   const Objective<Pose> objective(made.graph, edge_roles(made.graph), kWindow);
   Climb<Pose> climb(objective, kOptions, kSilent);
-  const auto peak = climb.from(CovarianceScale{});
+  const auto peak = climb.from(kStarts.front());
   climb.stand_at(peak);
   KnownBefore known{.loops = {}, .vertex = [](Index v) { return std::optional(v); }};
   for (Index k = 0; k < 40; ++k) known.loops.emplace_back(k);
@@ -184,7 +184,7 @@ TYPED_TEST(SlippingOf, GoesBackWhereNothingSlips) {
   const auto made = random_loop_graph<Pose>(random, 150, 80, 1.0);
   const Objective<Pose> objective(made.graph, edge_roles(made.graph), kWindow);
   Climb<Pose> climb(objective, kOptions, kSilent);
-  const auto before = climb.from(CovarianceScale{});
+  const auto before = climb.from(kStarts.front());
   const auto after = climb.slipping(before);
   EXPECT_EQ(after.evidence, before.evidence);
   EXPECT_EQ(after.accepted, before.accepted);

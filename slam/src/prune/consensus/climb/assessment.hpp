@@ -31,6 +31,9 @@ class Assessment {
   /// the map together.
   void hold_nearness(bool held) { nearness_held_ = held; }
 
+  /// Whether loops are weighed as if the scales they are weighed at were known.
+  void know_scales(bool known) { scales_known_ = known; }
+
   /// Where the map may become another though the same loops are accepted.
   void forget_nearness() { found_.near_of.reset(); }
 
@@ -91,6 +94,11 @@ class Assessment {
             found_.covariances[loop]};
   }
 
+  // Of the logs of the scales, by what is left to tell them.
+  CovarianceScale scale_deviation(const Redundancy<Pose>& told) const {
+    return scales_known_ ? CovarianceScale{0.0, 0.0} : objective_.scale_deviation(told);
+  }
+
   /// How much of each coordinate of an accepted loop is left to tell how accurate it is:
   /// diag(I - Omega P), Omega its mean information, P the residual's covariance.
   typename Pose::Tangent redundancy(const Explanation<Pose>& now, Index loop) const;
@@ -143,6 +151,7 @@ class Assessment {
   std::optional<BiasFit<Pose>> bias_;  // at the peak
   typename Estimate<Pose>::Layout odometry_;
   bool nearness_held_ = false;
+  bool scales_known_ = false;
   NearnessFound nearness_found_;
 };
 

@@ -48,9 +48,26 @@ Climb<Pose>::Climb(const Objective<Pose>& objective, ConsensusOptions options, R
       at_(objective, options_.calibrate, pace_, run_.threads) {}
 
 template <class Pose>
-Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale) {
-  start(none_at(scale));
+Explanation<Pose> Climb<Pose>::from(const StartScales& scales) {
+  const Explanation<Pose> none = none_at({scales.odometry, scales.loops});
+  if (scales.known && options_.calibrate) {
+    take_what_agrees(none);
+  } else {
+    start(none);
+  }
   return climb();
+}
+
+// As if its scales were known. Where nothing tells of them odometry may err by any factor, and any
+// loop may be true: a run of false ones that agree with each other is the likeliest then.
+template <class Pose>
+void Climb<Pose>::take_what_agrees(const Explanation<Pose>& none) {
+  {
+    const auto known = at_.as_if_scales_were_known();
+    start(none);
+    for (int round = 0; round < options_.max_rounds && shift(); ++round) tell_progress();
+  }
+  at_.assess();
 }
 
 // Learns no scales before it has accepted what they say.

@@ -31,11 +31,10 @@ class Climb {
   const Objective<Pose>& objective() const noexcept { return objective_; }
   const ConsensusOptions& options() const noexcept { return options_; }
 
-  /// Climbs from nothing accepted, with `start` as the factors on the covariances; the best
-  /// explanation on the way.
-  Explanation<Pose> from(const CovarianceScale& start);
+  /// Climbs from nothing accepted; the best explanation on the way.
+  Explanation<Pose> from(const StartScales& start);
 
-  /// The same from there.
+  /// From there.
   Explanation<Pose> from(Standpoint<Pose> standpoint);
 
   /// Goes on from there: loops are accepted and dropped and scales learnt while that helps, without
@@ -98,6 +97,7 @@ class Climb {
   void stand_on(Standpoint<Pose> standpoint);
   void begin();
   Explanation<Pose> climb();
+  void take_what_agrees(const Explanation<Pose>& none);
   const Explanation<Pose>* peak_ahead(bool learnt);
   const Explanation<Pose>& settle(const std::vector<bool>& accepted);
   const Explanation<Pose>* grow();

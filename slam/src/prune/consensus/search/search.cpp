@@ -85,9 +85,11 @@ void settle_anew(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
   if (!best_of(found).tells_of_scales()) return;
   const std::vector<bool> accepted = best_of(found).accepted;
   Climb<Pose> afresh = climb.on(climb.objective());
-  const auto grow = [&](const auto& start) { found.push_back(afresh.settled_on(accepted, start)); };
-  for (const auto& [odometry, loops] : {kStarts[kStartsAlways - 1], kStarts[1]}) {
-    unless_it_breaks_down(grow, CovarianceScale{odometry, loops});
+  const auto grow = [&](const auto& start) {
+    found.push_back(afresh.settled_on(accepted, {start.odometry, start.loops}));
+  };
+  for (const auto& start : {kStarts[kStartsAlways - 1], kStarts[1]}) {
+    unless_it_breaks_down(grow, start);
   }
   found.push_back(settled_on_either_side(climb, best_of(found)));
 }
@@ -142,9 +144,9 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
     try_slips(climb, found);
     if (at_once) settle_anew(climb, found);
   }
-  for (const auto& [odometry, loops] : std::span(kStarts).subspan(kStartsAlways)) {
+  for (const StartScales& start : std::span(kStarts).subspan(kStartsAlways)) {
     if (!calibrate || !astray()) break;
-    unless_it_breaks_down(try_from, CovarianceScale{odometry, loops});
+    unless_it_breaks_down(try_from, start);
   }
   if (const auto* none = nothing()) found.push_back(*none);
   keep_peaks(found);

@@ -24,8 +24,8 @@ void unless_it_breaks_down(Function&& climb_from, const Start& start) {
 /// Calls `climb_from` with the first of kStarts in turn, without `calibrate` with the file's alone.
 template <class Function>
 void climb_from_each_start(bool calibrate, Function&& climb_from) {
-  for (const auto& [odometry, loops] : std::span(kStarts).first(kStartsAlways)) {
-    unless_it_breaks_down(climb_from, CovarianceScale{odometry, loops});
+  for (const StartScales& start : std::span(kStarts).first(kStartsAlways)) {
+    unless_it_breaks_down(climb_from, start);
     if (!calibrate) break;
   }
 }
