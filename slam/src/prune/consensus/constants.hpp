@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <numbers>
 
+#include "prune/consensus/covariance_scale.hpp"
+
 /// Every constant that consensus decides by: what it means, its unit, and where it comes from. What
 /// each is worth, on graphs that none was chosen on, is in docs/results/ablation.md. Constants that
 /// guard against rounding, bound repetitions or samples, or tell how long a step takes stand where
@@ -45,20 +47,18 @@ inline constexpr std::size_t kFewLoops = 5;
 /// of these scales, or with each other, those best that are true, so that loops sharper than stated
 /// are not drawn to false ones first. The first four always, the others until one leads anywhere:
 /// of errors that are all stated a hundred times too small no loop agrees with the next.
-struct StartScales {
-  double odometry;
-  double loops;
+struct StartScales : CovarianceScale {
   bool known;
 };
-inline constexpr std::array<StartScales, 9> kStarts = {{{1.0, 1.0, true},
-                                                        {100.0, 1.0, true},
-                                                        {1.0, 0.01, false},
-                                                        {0.01, 0.01, true},
-                                                        {100.0, 100.0, false},
-                                                        {1.0, 100.0, false},
-                                                        {0.01, 1.0, false},
-                                                        {100.0, 0.01, false},
-                                                        {0.01, 100.0, false}}};
+inline constexpr std::array<StartScales, 9> kStarts = {{{{1.0, 1.0}, true},
+                                                        {{100.0, 1.0}, true},
+                                                        {{1.0, 0.01}, false},
+                                                        {{0.01, 0.01}, true},
+                                                        {{100.0, 100.0}, false},
+                                                        {{1.0, 100.0}, false},
+                                                        {{0.01, 1.0}, false},
+                                                        {{100.0, 0.01}, false},
+                                                        {{0.01, 100.0}, false}}};
 inline constexpr std::size_t kStartsAlways = 4;
 
 /// Loops in a sample at least: half of them false, the rest tell the log of a scale to within .1.

@@ -39,7 +39,7 @@ double highest_evidence(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
   detail::Climb<Pose> climb(objective, options, run);
   std::vector<detail::Explanation<Pose>> found;
   detail::climb_from_each_start(options.calibrate, [&](const auto& start) {
-    found.push_back(climb.settled_on(accepted, {start.odometry, start.loops}));
+    found.push_back(climb.settled_on(accepted, start));
   });
   if (found.empty()) return -std::numeric_limits<double>::infinity();
   const auto& best = detail::best_of(found);

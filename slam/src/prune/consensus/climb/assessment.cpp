@@ -323,8 +323,7 @@ Standing Assessment<Pose>::accepted_standing(const Explanation<Pose>& now, Index
   const Redundancy<Pose> told{
       .odometry = (now.redundancy.odometry.array() - (1.0 - own.array())).max(0.0),
       .loops = (now.redundancy.loops - learnt * own).cwiseMax(0.0)};
-  const auto gain =
-      loop_gain(others, own_error(loop), found_.mixture, scale_deviation(told));
+  const auto gain = loop_gain(others, own_error(loop), found_.mixture, scale_deviation(told));
   // Alone it would join parts that lie anywhere on the map.
   const double density = std::max(gain.log_density, -objective_.log_volume() - 0.5 * gain.chi2);
   const double nearer = objective_.log_nearer(loop, all.r);
@@ -340,8 +339,8 @@ Standing Assessment<Pose>::other_standing(const Explanation<Pose>& now, Index lo
   double density = -objective_.log_volume();
   if (standing.connected()) {
     const auto others = belief(loop);
-    const auto gain = loop_gain(others, own_error(loop), found_.mixture,
-                                scale_deviation(now.redundancy));
+    const auto gain =
+        loop_gain(others, own_error(loop), found_.mixture, scale_deviation(now.redundancy));
     const Matrix Omega = objective_.information(now, *found_.graph, loop, gain.weight);
     standing.chi2 = gain.chi2;
     density = gain.log_density + objective_.log_nearer(loop, residual_with(others, Omega));

@@ -49,7 +49,7 @@ Climb<Pose>::Climb(const Objective<Pose>& objective, ConsensusOptions options, R
 
 template <class Pose>
 Explanation<Pose> Climb<Pose>::from(const StartScales& scales) {
-  const Explanation<Pose> none = none_at({scales.odometry, scales.loops});
+  const Explanation<Pose> none = none_at(scales);
   if (scales.known && options_.calibrate) {
     take_what_agrees(none);
   } else {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -9,24 +8,11 @@
 #include <vector>
 
 #include "optimize/normal_equations.hpp"
+#include "prune/consensus/covariance_scale.hpp"
 #include "prune/consensus/estimate/pace.hpp"
 #include "prune/consensus/estimate/reduced_graph.hpp"
 
 namespace isotherm::slam::detail {
-
-/// Factors on the covariances the file states, as calibrated from the data.
-struct CovarianceScale {
-  bool operator==(const CovarianceScale&) const = default;
-
-  double odometry = 1.0;
-  double loops = 1.0;
-};
-
-/// Whether both factors are, to within that of e.
-inline bool about_the_same(const CovarianceScale& a, const CovarianceScale& b) {
-  return std::abs(std::log(a.odometry / b.odometry)) < 1.0 &&
-         std::abs(std::log(a.loops / b.loops)) < 1.0;
-}
 
 /// The poses of a reduced graph given odometry and the accepted loops, and the
 /// factor of the normal equations there, from which covariances are read.

@@ -85,9 +85,7 @@ void settle_anew(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
   if (!best_of(found).tells_of_scales()) return;
   const std::vector<bool> accepted = best_of(found).accepted;
   Climb<Pose> afresh = climb.on(climb.objective());
-  const auto grow = [&](const auto& start) {
-    found.push_back(afresh.settled_on(accepted, {start.odometry, start.loops}));
-  };
+  const auto grow = [&](const auto& start) { found.push_back(afresh.settled_on(accepted, start)); };
   for (const auto& start : {kStarts[kStartsAlways - 1], kStarts[1]}) {
     unless_it_breaks_down(grow, start);
   }
