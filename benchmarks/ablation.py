@@ -57,6 +57,9 @@ MOVES = {
          "if (trial == Trial::lesson_of_scales && {off}) continue;"),
     "most loops called wider or sharper":
         ("climb/learn.cpp", "sharper_most(shares)}) {\n", "if (start.factor != 1.0 && {off}) continue;"),
+    "scales of starts taken for known":
+        (CLIMB, "  const Explanation<Pose> none = none_at(scale);\n",
+         "if ({off}) {{ start(none); return climb(); }}"),
     "far starts": ("search/search.cpp", ": std::span(kStarts).subspan(kStartsAlways)) {\n",
                    "if ({off}) break;"),
     "loops weighed by the others": (CLIMB, "::weigh_by_others() {\n", "if ({off}) return false;"),
@@ -117,11 +120,11 @@ def instrument(tree):
     for k, (source, behind, left_out) in enumerate(MOVES.values()):
         text = behind + left_out.format(off=f"is_off({k})") + "\n"
         replace(room / source, [(behind, text)])
-    loop = "for (const auto& [odometry, loops] : std::span(kStarts).first(kStartsAlways)) {"
+    loop = "for (const StartScales& start : std::span(kStarts).first(kStartsAlways)) {"
     replace(room / "search/starts.hpp",
-            [(loop, f'int start = 0;\n  {loop}\n'
+            [(loop, f'int number = 0;\n  {loop}\n'
                     f'    const char* without = std::getenv("{PREFIX}kStarts");\n'
-                    "    if (without && start++ == std::atoi(without)) continue;"),
+                    "    if (without && number++ == std::atoi(without)) continue;"),
              ("#pragma once\n", "#pragma once\n#include <cstdlib>\n")])
 
 

@@ -74,7 +74,7 @@ void Snapshot<Pose>::climb_from_nothing(bool everywhere) {
       surpassed_ = add(peak) || surpassed_;
     }
   } else {
-    add(climb_->from(kStarts.front()));
+    add(climb_->from(kStarts.front(), true));
   }
   const auto& nearness = assessment().nearness_found();
   const double done = (nearness.times - nearness_before.times) * nearness.kWork;

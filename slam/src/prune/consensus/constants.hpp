@@ -42,23 +42,25 @@ inline constexpr std::size_t kFewLoops = 5;
 
 // The search.
 
-/// Factors on the stated covariances of odometry and of loops to start from, and whether they are
-/// taken for `known` until no more loop agrees with them: either loops agree with odometry, at one
-/// of these scales, or with each other, those best that are true, so that loops sharper than stated
-/// are not drawn to false ones first. The first four always, the others until one leads anywhere:
-/// of errors that are all stated a hundred times too small no loop agrees with the next.
+/// Factors on the stated covariances of odometry and of loops to start from: whether climbs take
+/// them for known until no more loop agrees with them, and whether they do not. Loops agree with
+/// odometry, at one of these scales, or with each other, those best that are true: from sharper
+/// loops than stated a climb is not drawn to false ones first. The first four always, the others
+/// until one leads anywhere: of errors that are all stated a hundred times too small no loop agrees
+/// with the next.
 struct StartScales : CovarianceScale {
   bool known;
+  bool unknown;
 };
-inline constexpr std::array<StartScales, 9> kStarts = {{{{1.0, 1.0}, true},
-                                                        {{100.0, 1.0}, true},
-                                                        {{1.0, 0.01}, false},
-                                                        {{0.01, 0.01}, true},
-                                                        {{100.0, 100.0}, false},
-                                                        {{1.0, 100.0}, false},
-                                                        {{0.01, 1.0}, false},
-                                                        {{100.0, 0.01}, false},
-                                                        {{0.01, 100.0}, false}}};
+inline constexpr std::array<StartScales, 9> kStarts = {{{{1.0, 1.0}, true, false},
+                                                        {{100.0, 1.0}, true, true},
+                                                        {{1.0, 0.01}, false, true},
+                                                        {{0.01, 0.01}, true, false},
+                                                        {{100.0, 100.0}, false, true},
+                                                        {{1.0, 100.0}, false, true},
+                                                        {{0.01, 1.0}, false, true},
+                                                        {{100.0, 0.01}, false, true},
+                                                        {{0.01, 100.0}, false, true}}};
 inline constexpr std::size_t kStartsAlways = 4;
 
 /// Loops in a sample at least: half of them false, the rest tell the log of a scale to within .1.

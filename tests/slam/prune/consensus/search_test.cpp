@@ -70,7 +70,7 @@ TYPED_TEST(CarryOf, OfAllLoopsStandsWhereItStood) {
   const auto made = random_loop_graph<Pose>(random, 80, 40, 1.0);
   const Objective<Pose> objective(made.graph, edge_roles(made.graph), kWindow);
   Climb<Pose> climb(objective, kOptions, kSilent);
-  const auto peak = climb.from(kStarts.front());
+  const auto peak = climb.from({}, true);
   climb.stand_at(peak);
   KnownBefore known{.loops = {}, .vertex = [](Index v) { return std::optional(v); }};
   for (Index k = 0; k < 40; ++k) known.loops.emplace_back(k);
@@ -92,7 +92,7 @@ TYPED_TEST(CarryOf, OfSomeLoopsLeadsToThePeakOfAll) {
   const auto part = objective.of(half);
   EXPECT_EQ(part.stated().reduced.loops.size(), half.size());
   Climb<Pose> few(part, kOptions, kSilent);
-  const auto peak = few.from(kStarts.front());
+  const auto peak = few.from({}, true);
   few.stand_at(peak);
   KnownBefore known{.loops = std::vector<std::optional<Index>>(40),
                     .vertex = [](Index v) { return std::optional(v); }};
@@ -102,7 +102,7 @@ TYPED_TEST(CarryOf, OfSomeLoopsLeadsToThePeakOfAll) {
   EXPECT_EQ(there.explanation.scale, peak.scale);
   EXPECT_NEAR(there.explanation.shares.count(), 2.0 * peak.shares.count(), 1e-9);
   Climb<Pose> all(objective, kOptions, kSilent);
-  const double from_nothing = all.from(kStarts.front()).evidence;
+  const double from_nothing = all.from({}, true).evidence;
   EXPECT_NEAR(all.from(there).evidence, from_nothing, 2.0 * kBetter);
 }
 
@@ -185,7 +185,7 @@ TYPED_TEST(SlippingOf, GoesBackWhereNothingSlips) {
   const auto made = random_loop_graph<Pose>(random, 150, 80, 1.0);
   const Objective<Pose> objective(made.graph, edge_roles(made.graph), kWindow);
   Climb<Pose> climb(objective, kOptions, kSilent);
-  const auto before = climb.from(kStarts.front());
+  const auto before = climb.from({}, true);
   const auto after = climb.slipping(before);
   EXPECT_EQ(after.evidence, before.evidence);
   EXPECT_EQ(after.accepted, before.accepted);
@@ -206,7 +206,7 @@ TEST(Search, OnASampleFindsWhatClimbsFromEachStartFind) {
   double highest = whole.nothing()->evidence;
   std::vector<bool> accepted;
   climb_from_each_start(true, [&](const auto& start) {
-    const auto peak = whole.from(start);
+    const auto peak = whole.from(start, start.known);
     if (peak.evidence > highest) accepted = peak.accepted;
     highest = std::max(highest, peak.evidence);
   });
@@ -239,7 +239,7 @@ TEST(Search, EndsWithTheFirstClimbThatLeavesNoLoopInDoubt) {
   const auto city = simulate_city({.poses = 600, .measurements = {.loops = 150}, .seed = 3});
   const Objective<Pose2> objective(city.graph, edge_roles(city.graph), kWindow);
   Climb<Pose2> first(objective, kOptions, kSilent);
-  const auto peak = first.from(kStarts.front());
+  const auto peak = first.from({}, true);
   ASSERT_TRUE(first.none_in_doubt(peak));
   Climb<Pose2> climb(objective, kOptions, kSilent);
   const auto found = search(climb);
@@ -255,7 +255,7 @@ TEST(Search, DoesNotEndWhereALoopIsInDoubt) {
   const auto bad = corrupt(city.graph, city.truth, {.type = NoiseType::random, .count = 1});
   const Objective<Pose2> objective(bad.graph, edge_roles(bad.graph), kWindow);
   Climb<Pose2> first(objective, kOptions, kSilent);
-  ASSERT_FALSE(first.none_in_doubt(first.from(kStarts.front())));
+  ASSERT_FALSE(first.none_in_doubt(first.from({}, true)));
   Climb<Pose2> climb(objective, kOptions, kSilent);
   search(climb);
   EXPECT_GT(climb.moves().size(), first.moves().size());
@@ -265,7 +265,7 @@ TEST(Search, NotToTheLastEndsWithAClimbThatExplainsAll) {
   const auto city = simulate_city({.poses = 600, .measurements = {.loops = 150}, .seed = 3});
   const Objective<Pose2> objective(city.graph, edge_roles(city.graph), kWindow);
   Climb<Pose2> first(objective, kOptions, kSilent);
-  ASSERT_TRUE(first.from(kStarts.front()).accepts_all());
+  ASSERT_TRUE(first.from({}, true).accepts_all());
   Climb<Pose2> climb(objective, kOptions, kSilent);
   EXPECT_TRUE(search(climb, {.to_the_last = false}).front().accepts_all());
   EXPECT_EQ(climb.moves().size(), first.moves().size());

@@ -48,9 +48,9 @@ Climb<Pose>::Climb(const Objective<Pose>& objective, ConsensusOptions options, R
       at_(objective, options_.calibrate, pace_, run_.threads) {}
 
 template <class Pose>
-Explanation<Pose> Climb<Pose>::from(const StartScales& scales) {
-  const Explanation<Pose> none = none_at(scales);
-  if (scales.known && options_.calibrate) {
+Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale, bool known) {
+  const Explanation<Pose> none = none_at(scale);
+  if (known && options_.calibrate) {
     take_what_agrees(none);
   } else {
     start(none);

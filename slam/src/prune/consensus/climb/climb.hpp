@@ -31,8 +31,9 @@ class Climb {
   const Objective<Pose>& objective() const noexcept { return objective_; }
   const ConsensusOptions& options() const noexcept { return options_; }
 
-  /// Climbs from nothing accepted; the best explanation on the way.
-  Explanation<Pose> from(const StartScales& start);
+  /// Climbs from nothing accepted, at scales that are taken for `known` until no more loop agrees
+  /// with them; the best explanation on the way.
+  Explanation<Pose> from(const CovarianceScale& scale, bool known = false);
 
   /// From there.
   Explanation<Pose> from(Standpoint<Pose> standpoint);

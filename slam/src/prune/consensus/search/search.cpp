@@ -134,7 +134,14 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
     return none && std::ranges::all_of(
                        found, [&](const auto& peak) { return peak.evidence <= none->evidence; });
   };
-  if (astray()) climb_from_each_start(calibrate, try_from);
+  const auto try_start = [&](const StartScales& start) {
+    const auto climb_from = [&](bool known) {
+      if (!all_explained()) found.push_back(climb.from(start, known));
+    };
+    if (start.known) unless_it_breaks_down(climb_from, true);
+    if (start.unknown) unless_it_breaks_down(climb_from, false);
+  };
+  if (astray()) climb_from_each_start(calibrate, try_start);
   if (calibrate && all_explained()) {
     const auto refine = [&](const auto& best) { found.push_back(climb.refined(best)); };
     if (to_the_last) unless_it_breaks_down(refine, best_of(found));
@@ -144,7 +151,7 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   }
   for (const StartScales& start : std::span(kStarts).subspan(kStartsAlways)) {
     if (!calibrate || !astray()) break;
-    unless_it_breaks_down(try_from, start);
+    try_start(start);
   }
   if (const auto* none = nothing()) found.push_back(*none);
   keep_peaks(found);
