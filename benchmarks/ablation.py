@@ -72,8 +72,6 @@ MOVES = {
     "labels in runs":
         ("runs/runs.hpp", "Index leader(Index loop) const {", " if ({off}) return kNone;"),
     "slips of odometry": (POSITION, "::find_slips() {\n", "if ({off}) return false;"),
-    "coordinates leveled beside slips":
-        (POSITION, "::level_odometry() {\n", "if ({off}) return false;"),
     "slips for rejected runs": (SLIPS, TRIALS, "if (accepted && {off}) return false;"),
     "slips without a loop that tells one alone":
         (SLIPS, TRIALS, "if (!accepted && {off}) return false;"),

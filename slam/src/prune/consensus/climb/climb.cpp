@@ -172,9 +172,7 @@ template <class Pose>
 const Explanation<Pose>& Climb<Pose>::settle(const std::vector<bool>& accepted) {
   at_.now.accepted = accepted;
   at_.assess();
-  const auto by_levelling = [this] { return at_.level_odometry(); };
-  while (at_.learn_more_than(0.0) || weigh_anew() || at_.find_slips() ||
-         at_.once(Trial::level, by_levelling)) {
+  while (at_.learn_more_than(0.0) || weigh_anew() || at_.find_slips()) {
   }
   return at_.now;
 }

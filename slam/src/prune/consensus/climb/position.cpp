@@ -150,12 +150,6 @@ void Position<Pose>::slip(std::span<const SlipChange> changes) {
   if (!any_slips(changed)) changed.clear();
 }
 
-template <class Pose>
-bool Position<Pose>::level_odometry() {
-  if (now.shapes.slips.empty() || !calibrate_) return false;
-  return try_with([](auto& leveled) { leveled.shapes.odometry.setOnes(); }, {.learning = true});
-}
-
 template class Position<Pose2>;
 template class Position<Pose3>;
 

@@ -40,7 +40,7 @@ class Position {
   using Change = std::function<void(Explanation<Pose>&)>;
 
   /// Trials that are not repeated where they failed until something changes.
-  enum Trial { lesson, lesson_of_scales, slips, level, weights_by_others, afar, undecided, trials };
+  enum Trial { lesson, lesson_of_scales, slips, weights_by_others, afar, undecided, trials };
 
   /// `objective` must outlive this object.
   Position(const Objective<Pose>& objective, bool calibrate, Pace pace, int threads);
@@ -99,9 +99,6 @@ class Position {
   bool try_best_slips(double least);
 
   void slip(std::span<const SlipChange> changes);
-
-  /// Whether coordinates that an edge slips in, which seem to err more than others, do not.
-  bool level_odometry();
 
   Explanation<Pose> now;
   Explanation<Pose> best;  ///< on the way
