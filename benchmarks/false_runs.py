@@ -4,9 +4,8 @@
 A detector that takes one place for another does so for a while: each false loop measures what the
 one before it does, or what would follow from that round the turns of both ways (two floors alike),
 with an error of its own. On simulated cities as many false loops as true ones, in runs of eight
-along both ends. Writes docs/results/false-runs.md and
-docs/results/data/false_runs.csv. Every cell is kept in build/false_runs, so that an interrupted run
-goes on where it stopped.
+along both ends. Writes docs/results/false-runs.md and docs/results/data/false_runs.csv. Every cell
+is kept in build/false_runs, so that an interrupted run goes on where it stopped.
 """
 
 import functools
@@ -17,6 +16,7 @@ import random
 import sys
 import tempfile
 
+from reproduce import planar
 from support import variants
 from support.experiment import ROOT, argument_parser
 from support.runs import Command, Results, read_csv, run_all, write_csv
@@ -31,17 +31,6 @@ SAID = ["keep", "prune", "ambiguous"]
 TELLS = ["the same", "what follows"]
 
 
-def composed(a, b):
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return [a[0] + c * b[0] - s * b[1], a[1] + s * b[0] + c * b[1],
-            math.remainder(a[2] + b[2], 2.0 * math.pi)]
-
-
-def inverse(a):
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return [-c * a[0] - s * a[1], s * a[0] - c * a[1], -a[2]]
-
-
 def false_run(draw, way, like, tells):
     """Loops at successive poses that tell nearly the same transform, with errors as stated, or
     what follows from the first one's by the `way` from it at both ends."""
@@ -54,14 +43,15 @@ def false_run(draw, way, like, tells):
     for k in range(RUN):
         told = mistaken
         if tells == "what follows":
-            there, back = (composed(inverse(way[end]), way[end + k]) for end in (first, second))
-            told = composed(composed(inverse(there), mistaken), back)
+            there, back = (planar.between(way[end], way[end + k]) for end in (first, second))
+            *told, heading = planar.compose(planar.between(there, mistaken), back)
+            told.append(math.remainder(heading, 2.0 * math.pi))
         run.append(variants.Edge(like.tag, (first + k, second + k),
                                  [draw.gauss(m, s) for m, s in zip(told, sigma)] + information))
     return run
 
 
-def write_cell(command, work, poses, loops, seed, tells=TELLS[0]):
+def write_cell(command, work, poses, loops, seed, tells):
     """A graph and its labels; how many loops are true."""
     command.run("simulate", "city", "--poses", poses, "--loops", loops, "--seed", seed, "-o",
                 work / "clean.g2o")
@@ -70,7 +60,7 @@ def write_cell(command, work, poses, loops, seed, tells=TELLS[0]):
     way = [[0.0, 0.0, 0.0]]
     for edge in graph.edges:
         if edge.is_odometry:
-            way.append(composed(way[-1], edge.values[:3]))
+            way.append(planar.compose(way[-1], edge.values[:3]))
     draw = random.Random(f"{poses} {loops} {seed}")
     while len(graph.edges) < poses - 1 + 2 * len(true):
         graph.edges += false_run(draw, way, true[0], tells)
@@ -90,8 +80,7 @@ def measure(command, poses, loops, seed, tells, method):
         labels = {row["edge"]: row["label"] for row in read_csv(work / "labels.csv")}
         said = [(labels[row["edge"]], row["verdict"]) for row in read_csv(work / "p.csv")]
     return {"poses": poses, "loops": loops, "seed": seed, "tells": tells, "method": method,
-            "true": true,
-            "false": len(labels) - true} | {
+            "true": true, "false": len(labels) - true} | {
                 f"{name} {verdict}": said.count((label, verdict))
                 for name, label in (("true", "correct"), ("false", "incorrect")) for verdict in SAID}
 
