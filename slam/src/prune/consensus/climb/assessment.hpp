@@ -31,8 +31,13 @@ class Assessment {
   /// the map together.
   void hold_nearness(bool held) { nearness_held_ = held; }
 
-  /// Whether loops are weighed as if the scales they are weighed at were known.
-  void know_scales(bool known) { scales_known_ = known; }
+  /// While what this returns lives, loops are weighed as if scales were known.
+  [[nodiscard]] auto as_if_scales_were_known() {
+    scales_known_ = true;
+    const auto no_more = [](bool* known) { *known = false; };
+    return std::unique_ptr<bool, decltype(no_more)>(&scales_known_, no_more);
+  }
+  bool scales_are_known() const noexcept { return scales_known_; }
 
   /// Where the map may become another though the same loops are accepted.
   void forget_nearness() { found_.near_of.reset(); }

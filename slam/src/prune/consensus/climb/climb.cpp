@@ -63,7 +63,7 @@ Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale, bool known) {
 template <class Pose>
 void Climb<Pose>::take_what_agrees(const Explanation<Pose>& none) {
   {
-    const auto known = at_.as_if_scales_were_known();
+    const auto known = at_.assessment.as_if_scales_were_known();
     start(none);
     for (int round = 0; round < options_.max_rounds && shift(); ++round) tell_progress();
   }

@@ -89,7 +89,7 @@ void Position<Pose>::go_back(const Place& place) {
 
 template <class Pose>
 bool Position<Pose>::learn_more_than(double gain, double worth) {
-  if (!calibrate_ || !learns_) return false;
+  if (!calibrate_ || assessment.scales_are_known()) return false;
   learnt_from_ = std::max<std::size_t>(now.accepted_count(), 1);
   const double least = std::max(gain, worth);
   for (const Trial trial : {Trial::lesson, Trial::lesson_of_scales}) {

@@ -3,7 +3,6 @@
 #include <array>
 #include <functional>
 #include <limits>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -71,13 +70,6 @@ class Position {
   /// Loops that are neither accepted nor dropped.
   std::vector<bool> open() const;
 
-  /// While what this returns lives, loops are weighed as if scales were known, and none are learnt.
-  [[nodiscard]] auto as_if_scales_were_known() {
-    know_scales(true);
-    const auto no_more = [](Position* position) { position->know_scales(false); };
-    return std::unique_ptr<Position, decltype(no_more)>(this, no_more);
-  }
-
   /// Whether there was anything to learn that gains more than this, and what is `worth` a move.
   bool learn_more_than(double gain, double worth = kBetter);
 
@@ -115,14 +107,9 @@ class Position {
     std::vector<bool> dropped;
   };
 
-  void know_scales(bool known) {
-    learns_ = !known;
-    assessment.know_scales(known);
-  }
   void go_back(const Place& place);
 
   bool calibrate_;
-  bool learns_ = true;
   std::size_t learnt_from_ = 0;
   std::array<bool, trials> failed_{};
 };

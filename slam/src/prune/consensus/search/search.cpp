@@ -121,8 +121,8 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   climb.go_to_the_last(to_the_last);
   std::vector<Explanation<Pose>> found;
   const auto all_explained = [&] { return explains_all(climb, found, to_the_last); };
-  const auto try_from = [&](const auto& start) {
-    if (!all_explained()) found.push_back(climb.from(start));
+  const auto try_from = [&](const auto&... start) {
+    if (!all_explained()) found.push_back(climb.from(start...));
   };
   for (const auto& standpoint : standpoints(climb, sampled, depth.sample_soon)) {
     unless_it_breaks_down(try_from, standpoint);
@@ -135,9 +135,7 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
                        found, [&](const auto& peak) { return peak.evidence <= none->evidence; });
   };
   const auto try_start = [&](const StartScales& start) {
-    const auto climb_from = [&](bool known) {
-      if (!all_explained()) found.push_back(climb.from(start, known));
-    };
+    const auto climb_from = [&](bool known) { try_from(start, known); };
     if (start.known) unless_it_breaks_down(climb_from, true);
     if (start.unknown) unless_it_breaks_down(climb_from, false);
   };
