@@ -50,7 +50,6 @@ CONSTANTS = [
 CLIMB = "climb/climb.cpp"
 POSITION = "climb/position.cpp"
 SLIPS = "climb/slip_trials.cpp"
-TRIALS = "::for_any(const std::vector<Selection>& all, bool accepted) {\n"
 MOVES = {
     "lessons of the common scales alone":
         (POSITION, "    if (failed_[trial]) continue;\n",
@@ -72,9 +71,7 @@ MOVES = {
     "labels in runs":
         ("runs/runs.hpp", "Index leader(Index loop) const {", " if ({off}) return kNone;"),
     "slips of odometry": (POSITION, "::find_slips() {\n", "if ({off}) return false;"),
-    "slips for rejected runs": (SLIPS, TRIALS, "if (accepted && {off}) return false;"),
-    "slips without a loop that tells one alone":
-        (SLIPS, TRIALS, "if (!accepted && {off}) return false;"),
+    "slips for rejected runs": (SLIPS, "::for_rejected_runs() {\n", "if ({off}) return false;"),
     "slips as if loops were accurate":
         (SLIPS, "::as_if_accurate() {\n", "if ({off}) return false;"),
     "all accepted that are not false beyond doubt":

@@ -56,9 +56,10 @@ void add_conflicts(const PoseGraph<Pose>& graph, const EdgeRoles& roles, double 
   const detail::Shapes<Pose> shapes = {shape_of<Pose>(result.odometry_scales, scale.odometry),
                                        shape_of<Pose>(result.loop_scales, scale.loops),
                                        slips_as(graph, result.odometry_slips),
-                                       bias_of<Pose>(result.odometry_bias)};
+                                       bias_of<Pose>(result.odometry_bias), scale.odometry};
+  const auto own = detail::in_own_frames(graph, roles);
   const auto reduced =
-      detail::scaled_graph(detail::in_own_frames(graph, roles), roles, shapes).reduced;
+      detail::scaled_graph(own, roles, detail::chain_of(own, roles), shapes).reduced;
   const double gate = chi_squared_quantile(1.0 - significance, Pose::kDof);
   auto conflicts = detail::name_conflicts(reduced, scale, gate, kept, pruned, threads);
   for (std::size_t k = 0; k < conflicts.size(); ++k) {

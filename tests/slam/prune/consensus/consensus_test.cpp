@@ -330,6 +330,23 @@ TYPED_TEST(ConsensusOf, FindsWhereOdometrySlips) {
   EXPECT_LT(result.odometry_scale, 2.0);
 }
 
+// A matcher fails in one step, which tells that the robot jumped ten metres. The robot did not: it
+// moved about as far as in any step, or as it tells.
+TEST(Consensus, NamesTheStepThatJumps) {
+  constexpr Index kJumps = 150;
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+    auto city = simulate_city({.poses = 300, .measurements = {.loops = 60}, .seed = seed}).graph;
+    auto& step = city.constraints[kJumps];
+    ASSERT_EQ(step.to, kJumps + 1);
+    step.T_from_to = step.T_from_to * Pose2(8.0, -6.0, 0.0);
+    const auto result = consensus(city, edge_roles(city), {}, {.threads = 1});
+    EXPECT_EQ(count(result.verdicts, Verdict::keep), 60) << seed;
+    ASSERT_EQ(result.odometry_slips.size(), 1U) << seed;
+    EXPECT_EQ(result.odometry_slips.front().from, city.ids[kJumps]) << seed;
+    EXPECT_LT(result.odometry_scale, 3.0) << seed;
+  }
+}
+
 constexpr Index kSlipped = 100;
 
 /// A chain one edge of which is off by forty deviations, with true loops over fifteen edges; of

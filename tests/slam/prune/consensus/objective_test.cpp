@@ -179,7 +179,7 @@ TYPED_TEST(ObjectiveOf, KnowsTheInformationOfOdometry) {
       roles.odometry.push_back(roles.candidates.back());
       roles.candidates.pop_back();
     }
-    const auto scaled = scaled_graph(made.graph, roles, Shapes<Pose>());
+    const auto scaled = scaled_graph(made.graph, roles, {}, Shapes<Pose>());
     EXPECT_EQ(scaled.is_forest(), forest);
     Estimate<Pose> odometry(scaled.reduced);
     odometry.update(std::vector<bool>(scaled.reduced.loops.size(), false), {}, 0);
@@ -202,8 +202,8 @@ TYPED_TEST(ObjectiveOf, ScalesEachCoordinate) {
   shapes.odometry[1] = 0.2;
   shapes.loops[Pose::kDof - 1] = 7.0;
   shapes.loops[0] = 1.0 / 7.0;
-  const auto stated = scaled_graph(made.graph, roles, Shapes<Pose>());
-  const auto scaled = scaled_graph(made.graph, roles, shapes);
+  const auto stated = scaled_graph(made.graph, roles, {}, Shapes<Pose>());
+  const auto scaled = scaled_graph(made.graph, roles, {}, shapes);
   EXPECT_EQ(scaled.variables, stated.variables);
   const typename Pose::Tangent root = shapes.loops.cwiseSqrt();
   for (std::size_t k = 0; k < stated.reduced.loops.size(); ++k) {

@@ -63,6 +63,7 @@ void Assessment<Pose>::restore(const Explanation<Pose>& before, Findings found) 
 
 template <class Pose>
 bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
+  now.shapes.slip_scale = any_slips(now.shapes.slips) ? now.scale.odometry : 1.0;
   rescale(now.shapes);
   found_.mixture = now.mixture();
   find_peak(now);

@@ -134,9 +134,8 @@ Explanation<Pose> Climb<Pose>::slipping(const Explanation<Pose>& found) {
       log_odds_of(1.0 - options_.significance));
   const bool unhidden = hidden && trials.as_if_accurate();
   const bool believed = rejected && trials.for_rejected_runs();
-  const bool disbelieved = rejected && trials.for_strays();
   doubted_ = std::move(trials).doubted();
-  return unhidden || believed || disbelieved ? climb() : found;
+  return unhidden || believed ? climb() : found;
 }
 
 template <class Pose>

@@ -63,11 +63,10 @@ class Climb {
   const Assessment<Pose>& assessment() const noexcept { return at_.assessment; }
 
   /// On from there with edges of odometry that slip otherwise, where that explains loops better
-  /// that hide it: around an edge that slips they look less accurate than others, or are rejected;
-  /// or one is accepted that alone tells a slip.
+  /// that hide it: around an edge that slips they look less accurate than others, or are rejected.
   Explanation<Pose> slipping(const Explanation<Pose>& found);
 
-  /// What explains best that loops are true, or false, which odometry would have to slip otherwise
+  /// What explains best that loops are true which odometry would have to slip otherwise
   /// for, but worse than what was found: of the last call of slipping().
   const std::vector<Explanation<Pose>>& doubted() const noexcept { return doubted_; }
 

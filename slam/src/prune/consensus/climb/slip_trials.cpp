@@ -29,16 +29,15 @@ bool SlipTrials<Pose>::as_if_accurate() {
   });
 }
 
-// Whether it gains of any of these that they are all `accepted`, or none, until eight in a row do
-// not.
+// Until eight in a row do not gain.
 template <class Pose>
-bool SlipTrials<Pose>::for_any(const std::vector<Selection>& all, bool accepted) {
+bool SlipTrials<Pose>::for_rejected_runs() {
   bool any = false;
   int vain = 0;
-  for (const Selection& loops : all) {
+  for (const Selection& loops : rejected_runs()) {
     const Index first = loops.front();
-    if (at_.now.accepted[first] == accepted || !at_.now.standings[first].connected()) continue;
-    const bool gains = for_all_of(loops, accepted);
+    if (at_.now.accepted[first] || !at_.now.standings[first].connected()) continue;
+    const bool gains = for_run(loops);
     any = any || gains;
     vain = gains ? 0 : vain + 1;
     if (vain == kMostInVain) break;
@@ -46,20 +45,19 @@ bool SlipTrials<Pose>::for_any(const std::vector<Selection>& all, bool accepted)
   return any;
 }
 
-// Whether it gains that these are true, or false, and odometry slips otherwise. Else it is what
-// explains that best, and how much worse that is says how likely it is.
+// Whether it gains that these are true, and odometry slips otherwise. Else it is what explains that
+// best, and how much worse that is says how likely it is.
 template <class Pose>
-bool SlipTrials<Pose>::for_all_of(const Selection& loops, bool accepted) {
+bool SlipTrials<Pose>::for_run(const Selection& loops) {
   const double least = at_.now.evidence + kBetter;
   return at_.all_or_nothing([&] {
     std::fill(at_.dropped.begin(), at_.dropped.end(), false);
-    at_.take_as(loops, accepted);
+    at_.take_as(loops, true);
     at_.assess();
-    const bool slips = !accepted || at_.try_best_slips(0.0) || elsewhere(loops.front());
+    const bool slips = at_.try_best_slips(0.0) || elsewhere(loops.front());
     Explanation<Pose> best = at_.now;
     while (slips && at_.now.evidence <= least && (at_.try_best_slips(0.0) || moves_.shift())) {
-      const bool still = at_.now.accepted[loops.front()] == accepted;
-      if (still && at_.now.evidence > best.evidence) best = at_.now;
+      if (at_.now.accepted[loops.front()] && at_.now.evidence > best.evidence) best = at_.now;
     }
     if (at_.now.evidence > least) return true;
     doubted_.push_back(std::move(best));
@@ -93,26 +91,6 @@ std::vector<typename SlipTrials<Pose>::Selection> SlipTrials<Pose>::rejected_run
   std::vector<Selection> loops;
   for (Group& run : runs) loops.push_back(std::move(run.loops));
   return loops;
-}
-
-template <class Pose>
-std::vector<typename SlipTrials<Pose>::Selection> SlipTrials<Pose>::strays() const {
-  std::vector<int> agree(at_.now.accepted.size(), 0);
-  std::vector<int> differ = agree;
-  for (std::size_t k = 0; k < agree.size(); ++k) {
-    const Index before = at_.assessment.objective().runs().before(static_cast<Index>(k));
-    if (before == Runs<Pose>::kNone) continue;
-    auto& count = at_.now.accepted[k] == at_.now.accepted[before] ? agree : differ;
-    ++count[k];
-    ++count[before];
-  }
-  std::vector<Selection> strays;
-  for (std::size_t k = 0; k < agree.size(); ++k) {
-    if (at_.now.accepted[k] && differ[k] > 0 && agree[k] == 0) {
-      strays.push_back({static_cast<Index>(k)});
-    }
-  }
-  return strays;
 }
 
 template class SlipTrials<Pose2>;

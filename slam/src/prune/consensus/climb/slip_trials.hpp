@@ -32,22 +32,15 @@ class SlipTrials {
 
   /// Whether it gains of any run of rejected loops that it is true: they may be refuted each alone,
   /// and tell a slip together. The likeliest first.
-  bool for_rejected_runs() { return for_any(rejected_runs(), true); }
+  bool for_rejected_runs();
 
-  /// Whether it gains of any stray loop that it is false: accepted next to which in its run all are
-  /// rejected. One that tells a slip alone may be false: with it the map agrees with that loop, and
-  /// with no other of the run.
-  bool for_strays() { return for_any(strays(), false); }
-
-  /// What explains best that loops are true, or false, of which it does not gain.
+  /// What explains best that such a run is true, of those of which it does not gain.
   std::vector<Explanation<Pose>> doubted() && { return std::move(doubted_); }
 
  private:
-  bool for_any(const std::vector<Selection>& all, bool accepted);
-  bool for_all_of(const Selection& loops, bool accepted);
+  bool for_run(const Selection& loops);
   bool elsewhere(Index loop);
   std::vector<Selection> rejected_runs() const;
-  std::vector<Selection> strays() const;
 
   Position<Pose>& at_;
   Moves moves_;

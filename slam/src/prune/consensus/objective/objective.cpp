@@ -53,8 +53,7 @@ Objective<Pose>::Objective(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
       window_(window),
       calibrate_(calibrate),
       most_odometry_(most_scales<Pose>(calibrate ? step_spread(graph_, roles_) : StepSpread{})),
-      step_variance_(mean_variance<Pose>(chain_)),
-      longest_slip_(most_scales<Pose>(step_length(graph_, roles_))) {
+      step_variance_(mean_variance<Pose>(chain_)) {
   const MapVolume<Pose> map(stated_.reduced.poses);
   log_volume_ = 0.5 * (map.variance().array().log().sum() + Pose::kDof * kLog2Pi);
   for (const auto& loop : stated_.reduced.loops) {
@@ -132,27 +131,19 @@ BiasPrior<Pose> Objective<Pose>::bias_prior(const Explanation<Pose>& explanation
           variance.template tail<Pose::kDof - Pose::kDim>()};
 }
 
-// How much less likely it is that the robot moved as a slip of each size leaves it to have, in the
-// mean of its errors: steps are about as long as those that are told, normal about no motion.
+// log of how likely it is that just these edges slip, and that the robot moved as they then tell.
 template <class Pose>
-typename Objective<Pose>::SlipSizes Objective<Pose>::slip_excess(
-    const Explanation<Pose>& explanation) const {
-  const typename Pose::Tangent logs =
-      log_scales(explanation.scale.odometry, explanation.shapes.odometry);
-  SlipSizes excess{};
-  for (std::size_t k = 1; k < kSlipSizes; ++k) {
-    excess[k] = 0.5 * slip_factor(k) * (logs - longest_slip_).array().exp().sum();
+double Objective<Pose>::log_slips(const Explanation<Pose>& explanation) const {
+  const auto& shapes = explanation.shapes;
+  const typename Pose::Tangent root = shapes.odometry.cwiseSqrt();
+  double sum = log_prior_of(shapes.slips);
+  for (std::size_t v = 0; v < shapes.slips.size(); ++v) {
+    if (shapes.slips[v] == 0) continue;
+    const auto& edge = *chain_[v];
+    const typename Pose::Matrix Sigma = root.asDiagonal() * edge.covariance * root.asDiagonal();
+    sum += slipped<Pose>(edge, Sigma, shapes.slips[v], shapes.slip_scale).log_motion;
   }
-  return excess;
-}
-
-template <class Pose>
-typename Objective<Pose>::SlipSizes Objective<Pose>::slip_odds(
-    const Explanation<Pose>& explanation) const {
-  SlipSizes odds = log_slip_odds(explanation.shapes.slips, chain_.size());
-  const SlipSizes excess = slip_excess(explanation);
-  for (std::size_t k = 0; k < kSlipSizes; ++k) odds[k] -= excess[k];
-  return odds;
+  return sum;
 }
 
 template <class Pose>
@@ -164,10 +155,7 @@ double Objective<Pose>::log_scale_peak(const Explanation<Pose>& explanation) con
   const auto& [scale, shapes, redundancy] =
       std::tie(explanation.scale, explanation.shapes, explanation.redundancy);
   const auto steps = static_cast<double>(roles_.odometry.size());
-  const SlipSizes excess = slip_excess(explanation);
-  double slips = log_prior_of(shapes.slips);
-  for (const std::uint8_t slip : shapes.slips) slips -= excess[slip];
-  return slips + peak(scale.odometry, shapes.odometry, redundancy.odometry) +
+  return log_slips(explanation) + peak(scale.odometry, shapes.odometry, redundancy.odometry) +
          peak(scale.loops, shapes.loops, redundancy.loops) -
          log_excess(log_scales(scale.odometry, shapes.odometry), most_odometry_, steps);
 }

@@ -104,7 +104,7 @@ class Objective {
   /// As stated.
   const ScaledGraph<Pose>& stated() const noexcept { return stated_; }
   ScaledGraph<Pose> scaled(const Shapes<Pose>& shapes) const {
-    return scaled_graph(graph_, roles_, shapes);
+    return scaled_graph(graph_, roles_, chain_, shapes);
   }
   const Runs<Pose>& runs() const noexcept { return runs_; }
   std::size_t odometry_edges() const noexcept { return chain_.size(); }
@@ -162,7 +162,8 @@ class Objective {
                                        const ScaledGraph<Pose>& graph,
                                        std::span<const Belief<Pose>> steps, int threads = 1) const {
     return detail::slip_changes<Pose>(contracted(explanation, graph), explanation.scale.odometry,
-                                      slip_odds(explanation), steps, threads);
+                                      log_slip_odds(explanation.shapes.slips, chain_.size()), steps,
+                                      threads);
   }
 
   /// Of odometry's bias, where its errors are as in the explanation: normal, by the mean variance
@@ -184,13 +185,10 @@ class Objective {
   double log_scale_peak(const Explanation<Pose>& explanation) const;
 
  private:
-  using SlipSizes = std::array<double, kSlipSizes>;
-
-  SlipSizes slip_excess(const Explanation<Pose>& explanation) const;
-  SlipSizes slip_odds(const Explanation<Pose>& explanation) const;
+  double log_slips(const Explanation<Pose>& explanation) const;
   ContractedChain<Pose> contracted(const Explanation<Pose>& explanation,
                                    const ScaledGraph<Pose>& graph) const {
-    const auto& [odometry, loops, slips, bias] = explanation.shapes;
+    const auto& [odometry, loops, slips, bias, slip_scale] = explanation.shapes;
     return {chain_, odometry, slips, bias, graph.reduced};
   }
   double loops_fit(const Explanation<Pose>& explanation, const ScaledGraph<Pose>& graph,
@@ -206,7 +204,6 @@ class Objective {
   bool calibrate_;
   typename Pose::Tangent most_odometry_;
   typename Pose::Tangent step_variance_;  // mean, as stated
-  typename Pose::Tangent longest_slip_;   // logs of factors as most_odometry_: as long as steps are
   double log_volume_;
   std::vector<double> log_sigma_;  // log|Sigma| of each loop
 };

@@ -24,10 +24,14 @@ void apply(const typename Pose::Tangent& shape, const std::vector<Index>& edges,
 }
 
 template <class Pose>
-void apply(const Slips& slips, const std::vector<std::optional<Index>>& edges,
-           PoseGraph<Pose>& graph) {
+void slip(const Shapes<Pose>& shapes, const std::vector<std::optional<Index>>& edges,
+          const Chain<Pose>& chain, PoseGraph<Pose>& graph) {
   for (std::size_t v = 0; v < edges.size(); ++v) {
-    if (edges[v]) graph.constraints[*edges[v]].information /= slip_factor(slips[v]);
+    if (shapes.slips[v] == 0) continue;
+    auto& information = graph.constraints[*edges[v]].information;
+    const typename Pose::Matrix Sigma = information.inverse();
+    information =
+        slipped<Pose>(*chain[v], Sigma, shapes.slips[v], shapes.slip_scale).covariance.inverse();
   }
 }
 
@@ -43,13 +47,13 @@ void turn(const TurnBias<Pose>& bias, const std::vector<std::optional<Index>>& e
 }
 
 template <class Pose>
-PoseGraph<Pose> with_shapes(PoseGraph<Pose> graph, const EdgeRoles& roles,
+PoseGraph<Pose> with_shapes(PoseGraph<Pose> graph, const EdgeRoles& roles, const Chain<Pose>& chain,
                             const Shapes<Pose>& shapes) {
   apply(shapes.odometry, roles.odometry, graph);
   apply(shapes.loops, roles.candidates, graph);
-  const auto chain = chain_edges(graph, roles);
-  if (!shapes.slips.empty()) apply(shapes.slips, chain, graph);
-  if (!shapes.bias.isZero(0.0)) turn<Pose>(shapes.bias, chain, graph);
+  const auto edges = chain_edges(graph, roles);
+  if (!shapes.slips.empty()) slip(shapes, edges, chain, graph);
+  if (!shapes.bias.isZero(0.0)) turn<Pose>(shapes.bias, edges, graph);
   return graph;
 }
 
@@ -96,9 +100,9 @@ double log_information(const std::vector<Link<Pose>>& links) {
 
 template <class Pose>
 ScaledGraph<Pose> scaled_graph(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                               const Shapes<Pose>& shapes) {
+                               const Chain<Pose>& chain, const Shapes<Pose>& shapes) {
   const bool as_stated = shapes == Shapes<Pose>{};
-  if (!as_stated) return scaled_graph(with_shapes(graph, roles, shapes), roles, {});
+  if (!as_stated) return scaled_graph(with_shapes(graph, roles, chain, shapes), roles, chain, {});
   ScaledGraph<Pose> scaled{.reduced = reduce(graph, roles)};
   scaled.by_bias = steps_by_bias(graph, roles, scaled.reduced);
   scaled.log_information = log_information(scaled.reduced.steps);
@@ -114,9 +118,9 @@ double rotation_against_translation(const typename Pose::Tangent& shape) {
 }
 
 template ScaledGraph<Pose2> scaled_graph(const PoseGraph<Pose2>&, const EdgeRoles&,
-                                         const Shapes<Pose2>&);
+                                         const Chain<Pose2>&, const Shapes<Pose2>&);
 template ScaledGraph<Pose3> scaled_graph(const PoseGraph<Pose3>&, const EdgeRoles&,
-                                         const Shapes<Pose3>&);
+                                         const Chain<Pose3>&, const Shapes<Pose3>&);
 template double rotation_against_translation<Pose2>(const Pose2::Tangent&);
 template double rotation_against_translation<Pose3>(const Pose3::Tangent&);
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "prune/consensus/estimate/estimate.hpp"
-#include "prune/consensus/odometry/slips.hpp"
+#include "prune/consensus/odometry/step_edges.hpp"
 #include "prune/consensus/odometry/turn_bias.hpp"
 
 namespace isotherm::slam::detail {
@@ -17,6 +17,7 @@ struct Shapes {
   typename Pose::Tangent loops = Pose::Tangent::Ones();
   Slips slips;
   TurnBias<Pose> bias = TurnBias<Pose>::Zero();
+  double slip_scale = 1.0;  ///< the factor on all of odometry, where edges slip: see slipped()
 
   bool operator==(const Shapes&) const = default;
 
@@ -44,8 +45,9 @@ struct ScaledGraph {
   bool is_forest() const { return reduced.steps.size() == static_cast<std::size_t>(variables); }
 };
 
+/// `chain`: of its odometry.
 template <class Pose>
 ScaledGraph<Pose> scaled_graph(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
-                               const Shapes<Pose>& shapes);
+                               const Chain<Pose>& chain, const Shapes<Pose>& shapes);
 
 }  // namespace isotherm::slam::detail

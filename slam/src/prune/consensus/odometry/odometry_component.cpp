@@ -7,8 +7,9 @@
 namespace isotherm::slam::detail {
 namespace {
 
-// Of an edge with covariance Sigma whose error `carry` leads to the end of its step: a factor on
-// coordinate d adds (e_d e_d' Sigma + Sigma e_d e_d') / 2 to Sigma.
+// Of an edge with covariance Sigma (of one that slips, what of that is odometry's: C Sigma_slip^-1
+// C, the derivative of C by the log of a factor on it) whose error `carry` leads to the end of its
+// step: a factor on coordinate d adds (e_d e_d' Sigma + Sigma e_d e_d') / 2 to Sigma.
 template <class Pose>
 void add_edge(const StepError<Pose>& step, const typename Pose::Matrix& carry,
               const typename Pose::Matrix& Sigma, OdometryComponent<Pose>& sum) {
@@ -36,8 +37,11 @@ OdometryComponent<Pose> odometry_component(const ContractedChain<Pose>& odometry
           if (k >= reduced.contracted) {  // an edge by itself
             add(Matrix::Identity(), step.covariance);
           } else {
-            visit_edges(odometry, k, [&](Index, const Matrix& carry, const Matrix& Sigma) {
-              add(carry, Sigma);
+            visit_edges(odometry, k, [&](Index v, const Matrix& carry, const Matrix& Sigma) {
+              const std::uint8_t slip = slip_of(odometry.slips, v);
+              if (slip == 0) return add(carry, Sigma);
+              const Matrix C = slipped<Pose>(*odometry.chain[v], Sigma, slip, scale).covariance;
+              add(carry, C * Sigma.inverse() * C / slip_factor(slip));
             });
           }
         }

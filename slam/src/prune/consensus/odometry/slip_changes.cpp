@@ -10,40 +10,17 @@ namespace {
 
 using LogOdds = std::array<double, kSlipSizes>;
 
-/// A step's error as one of its edges has it, along axes in which that is independent.
+constexpr double kLeastDeterminant = 1e-12;  // less is rounding
+
+// log N(r; M^-1 + D) - log N(r; M^-1), with M r the step's pull and M what of it is spare, all but
+// for the scale (Woodbury).
 template <class Pose>
-struct EdgeError {
-  using Tangent = typename Pose::Tangent;
+double log_ratio(const StepError<Pose>& error, const typename Pose::Matrix& D, double scale) {
   using Matrix = typename Pose::Matrix;
-
-  // With u = M r the step's pull and L L' the edge's covariance at the step's end, L' u and L' M L.
-  EdgeError(const StepError<Pose>& step, const Matrix& carry, const Matrix& Sigma, double scale) {
-    const Matrix L = carry * Matrix(Eigen::LLT<Matrix>(Sigma).matrixL());
-    const Eigen::SelfAdjointEigenSolver<Matrix> axes(L.transpose() * step.spare * L);
-    spare = axes.eigenvalues().cwiseMax(0.0).cwiseMin(1.0);
-    pull = axes.eigenvectors().transpose() * L.transpose() * step.pull / std::sqrt(scale);
-  }
-
-  // log N(r; M^-1 + D) - log N(r; M^-1) of D = (factor - 1) L L' (Woodbury).
-  double gain(double factor) const {
-    const auto det = 1.0 + (factor - 1.0) * spare.array();
-    return 0.5 * ((factor - 1.0) * pull.array().square() / det - det.log()).sum();
-  }
-
-  Tangent spare;
-  Tangent pull;
-};
-
-// The size other than `now` that gains most of an edge, where that is more than `best` does.
-template <class Pose>
-void take_better(const EdgeError<Pose>& edge, const LogOdds& log_odds, Index vertex,
-                 std::uint8_t now, std::optional<SlipChange>& best) {
-  for (std::uint8_t slip = 0; slip < kSlipSizes; ++slip) {
-    if (slip == now) continue;
-    const double gain =
-        edge.gain(slip_factor(slip) / slip_factor(now)) + log_odds[slip] - log_odds[now];
-    if (gain > (best ? best->gain : 0.0)) best = {vertex, slip, gain};
-  }
+  const Eigen::PartialPivLU<Matrix> with(Matrix::Identity() + error.spare * D);
+  const double determinant = with.determinant();
+  if (!(determinant > kLeastDeterminant)) return 0.0;
+  return 0.5 * (error.pull.dot(D * with.solve(error.pull)) / scale - std::log(determinant));
 }
 
 // Whether no slip of an edge gains: the most that one can is half of what the step's error is
@@ -64,13 +41,24 @@ std::optional<SlipChange> best_change(const ContractedChain<Pose>& odometry, std
   const auto& step = reduced.steps[k];
   const Index first = reduced.vertex[step.a];
   const auto edges = static_cast<std::size_t>(reduced.vertex[step.b] - first);
-  const bool slipped =
+  const bool any =
       !slips.empty() && any_slips(std::span(slips).subspan(static_cast<std::size_t>(first), edges));
-  if (!slipped && explained(error, scale, log_odds)) return std::nullopt;
+  if (!any && explained(error, scale, log_odds)) return std::nullopt;
   std::optional<SlipChange> best;
   visit_edges(odometry, k, [&](Index vertex, const Matrix& carry, const Matrix& Sigma) {
-    const EdgeError<Pose> edge(error, carry, Sigma, scale);
-    take_better(edge, log_odds, vertex, slip_of(odometry.slips, vertex), best);
+    const auto of_slip = [&](std::uint8_t slip) {
+      return slipped<Pose>(*odometry.chain[vertex], Sigma, slip, scale);
+    };
+    const std::uint8_t now = slip_of(odometry.slips, vertex);
+    const auto as_now = of_slip(now);
+    for (std::uint8_t slip = 0; slip < kSlipSizes; ++slip) {
+      if (slip == now) continue;
+      const auto other = of_slip(slip);
+      const Matrix D = carry * (other.covariance - as_now.covariance) * carry.transpose();
+      const double gain = log_ratio<Pose>(error, D, scale) + log_odds[slip] - log_odds[now] +
+                          other.log_motion - as_now.log_motion;
+      if (gain > (best ? best->gain : 0.0)) best = {vertex, slip, gain};
+    }
   });
   return best;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "matrices/decompositions.hpp"
 #include "prune/consensus/estimate/belief.hpp"
 #include "prune/consensus/estimate/reduced_graph.hpp"
 #include "prune/consensus/odometry/slips.hpp"
@@ -17,15 +18,41 @@ struct ChainEdge {
   Pose T;                            ///< from the vertex to the next
   bool forward;                      ///< told from the vertex
   typename Pose::Matrix covariance;  ///< where it is told from, as stated
+  typename Pose::Tangent motion;     ///< variances of how the robot moved, by coordinate
 };
 
 /// That of each vertex to the next; empty where there is none.
 template <class Pose>
 using Chain = std::vector<std::optional<ChainEdge<Pose>>>;
 
-/// Of a graph's odometry.
+/// Of a graph's odometry. Robots move about as far, and turn as far, as they do in a step (root
+/// mean square), or as they are told to in this one.
 template <class Pose>
 Chain<Pose> chain_of(const PoseGraph<Pose>& graph, const EdgeRoles& roles);
+
+/// What is believed of an edge's error if it slips.
+template <class Pose>
+struct SlippedEdge {
+  typename Pose::Matrix covariance;  ///< but for the factor on all of odometry
+  double log_motion;                 ///< log of how likely the robot's motion is with such an error
+};
+
+/// Of an edge with covariance Sigma where it does not slip, Sigma_slip = slip_factor() times that
+/// where it does. A robot that moved otherwise than it tells did so about as far as it moves in a
+/// step, normal with the variances S of ChainEdge::motion, so that the error has the density
+/// N(e; 0, Sigma_slip) exp(-e' S^-1 e / 2) = N(e; 0, C) (|C| / |Sigma_slip|)^(1/2) with
+/// C^-1 = Sigma_slip^-1 + S^-1. `scale`: the factor on all of odometry, which S does not have.
+template <class Pose>
+SlippedEdge<Pose> slipped(const ChainEdge<Pose>& edge, const typename Pose::Matrix& Sigma,
+                          std::size_t slip, double scale) {
+  if (slip == 0) return {Sigma, 0.0};
+  using Matrix = typename Pose::Matrix;
+  const Eigen::LLT<Matrix> told(slip_factor(slip) * Sigma);
+  Matrix information = told.solve(Matrix::Identity());
+  information.diagonal() += scale * edge.motion.cwiseInverse();
+  const Eigen::LLT<Matrix> both(information);
+  return {both.solve(Matrix::Identity()), -0.5 * (log_determinant(told) + log_determinant(both))};
+}
 
 /// A chain with factors on the variances of its coordinates and a bias, and what was contracted of
 /// it.
@@ -39,8 +66,8 @@ struct ContractedChain {
 };
 
 /// Calls `visit` with the first vertex of each edge that step `k` consists of, the matrix that
-/// carries an error of the edge to the step's end, and the edge's covariance: from the last edge to
-/// the first.
+/// carries an error of the edge to the step's end, and the edge's covariance where it does not
+/// slip: from the last edge to the first.
 template <class Pose, class Visit>
 void visit_edges(const ContractedChain<Pose>& odometry, std::size_t k, Visit&& visit) {
   using Matrix = typename Pose::Matrix;
@@ -50,8 +77,7 @@ void visit_edges(const ContractedChain<Pose>& odometry, std::size_t k, Visit&& v
   Pose onward;  // from the edge's end to the step's
   for (Index v = reduced.vertex[step.b] - 1; v >= reduced.vertex[step.a]; --v) {
     const ChainEdge<Pose>& edge = *chain[v];
-    const double factor = slip_factor(slip_of(slips, v));
-    const Matrix Sigma = factor * (root.asDiagonal() * edge.covariance * root.asDiagonal());
+    const Matrix Sigma = root.asDiagonal() * edge.covariance * root.asDiagonal();
     const Pose from_start = turned(edge.T, bias) * onward;
     visit(v, Matrix((edge.forward ? onward : from_start).inverse().adjoint()), Sigma);
     onward = from_start;

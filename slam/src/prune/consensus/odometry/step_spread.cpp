@@ -52,14 +52,6 @@ StepSpread step_spread(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
   return mean_square(graph, roles, steps, std::max(count - 1.0, 1.0));
 }
 
-template <class Pose>
-StepSpread step_length(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
-  const auto steps = steps_of(graph, roles);
-  return mean_square(graph, roles, steps, std::max(static_cast<double>(steps.size()), 1.0));
-}
-
-template StepSpread step_length(const PoseGraph<Pose2>&, const EdgeRoles&);
-template StepSpread step_length(const PoseGraph<Pose3>&, const EdgeRoles&);
 template StepSpread step_spread(const PoseGraph<Pose2>&, const EdgeRoles&);
 template StepSpread step_spread(const PoseGraph<Pose3>&, const EdgeRoles&);
 

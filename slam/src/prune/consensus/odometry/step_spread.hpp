@@ -14,10 +14,6 @@ struct StepSpread {
   double rotation = 0.0;
 };
 
-/// The same of how long they are: about no motion, not about the mean.
-template <class Pose>
-StepSpread step_length(const PoseGraph<Pose>& graph, const EdgeRoles& roles);
-
 /// `graph`: as in_own_frames() has it. O(odometry).
 template <class Pose>
 StepSpread step_spread(const PoseGraph<Pose>& graph, const EdgeRoles& roles);

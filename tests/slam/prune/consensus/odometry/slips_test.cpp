@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -54,6 +56,68 @@ TEST(Slips, AreNearAVertexFromEitherSide) {
 }
 
 template <class Pose>
+class SlippedEdgeOf : public testing::Test {
+ protected:
+  using Matrix = typename Pose::Matrix;
+  using Tangent = typename Pose::Tangent;
+
+  SlippedEdgeOf() {
+    Random random(6);
+    const Matrix L = Matrix::NullaryExpr([&] { return random.normal(); });
+    Sigma_ = L * L.transpose() + 0.1 * Matrix::Identity();
+    edge_.motion = Tangent::NullaryExpr([&] { return std::exp(random.normal()); });
+  }
+
+  ChainEdge<Pose> edge_{};
+  Matrix Sigma_;
+};
+
+using Poses = testing::Types<Pose2, Pose3>;
+TYPED_TEST_SUITE(SlippedEdgeOf, Poses);
+
+// The mean of exp(-e' S^-1 e / 2) over errors of covariance P is |I + P S^-1|^(-1/2).
+TYPED_TEST(SlippedEdgeOf, MovesAsRobotsDo) {
+  constexpr double kScale = 3.0;
+  using Square = typename TypeParam::Matrix;
+  const Square S = this->edge_.motion.asDiagonal();
+  for (std::size_t slip = 1; slip < kSlipSizes; ++slip) {
+    const auto found = slipped<TypeParam>(this->edge_, this->Sigma_, slip, kScale);
+    const Square P = kScale * slip_factor(slip) * this->Sigma_;
+    const Square both = (P.inverse() + S.inverse()).inverse();
+    EXPECT_LT((kScale * found.covariance - both).norm(), 1e-9 * both.norm());
+    const Square spread = Square::Identity() + P * S.inverse();
+    EXPECT_NEAR(found.log_motion, -0.5 * std::log(spread.determinant()), 1e-9);
+  }
+}
+
+TYPED_TEST(SlippedEdgeOf, IsAsToldWhereItDoesNotOrNothingIsKnownOfMotion) {
+  const auto none = slipped<TypeParam>(this->edge_, this->Sigma_, 0, 2.0);
+  EXPECT_EQ(none.covariance, this->Sigma_);
+  EXPECT_EQ(none.log_motion, 0.0);
+  this->edge_.motion.setConstant(std::numeric_limits<double>::infinity());
+  const auto anyhow = slipped<TypeParam>(this->edge_, this->Sigma_, 2, 2.0);
+  EXPECT_LT((anyhow.covariance / slip_factor(2) - this->Sigma_).norm(), 1e-9 * this->Sigma_.norm());
+  EXPECT_NEAR(anyhow.log_motion, 0.0, 1e-9);
+}
+
+// A step that is told to be long may have been: of the others the root mean square, of a robot that
+// never turns nothing.
+TEST(Chain, KnowsHowRobotsMove) {
+  PoseGraph<Pose2> graph;
+  graph.ids = {0, 1, 2, 3};
+  for (const auto& [from, length] : {std::pair{0, 1.0}, {1, 2.0}, {2, 7.0}}) {
+    graph.constraints.push_back(
+        {from, from + 1, Pose2(length, 0.0, 0.0), Eigen::Matrix3d::Identity()});
+  }
+  const auto chain = chain_of(graph, edge_roles(graph));
+  ASSERT_EQ(chain.size(), 3U);
+  EXPECT_NEAR(chain[0]->motion[0], 18.0, 1e-12);
+  EXPECT_NEAR(chain[1]->motion[1], 18.0, 1e-12);
+  EXPECT_NEAR(chain[2]->motion[0], 49.0, 1e-12);
+  EXPECT_TRUE(std::isinf(chain[0]->motion[2]));
+}
+
+template <class Pose>
 class SlipChangesOf : public testing::Test {
  protected:
   static constexpr Index kSlipped = 21;
@@ -79,7 +143,6 @@ class SlipChangesOf : public testing::Test {
   PoseGraph<Pose> graph_;
 };
 
-using Poses = testing::Types<Pose2, Pose3>;
 TYPED_TEST_SUITE(SlipChangesOf, Poses);
 
 TYPED_TEST(SlipChangesOf, GainWhatTheEvidenceDoes) {
