@@ -105,10 +105,10 @@ def page(rows):
                      f"| {total('true ambiguous')} | {total('false')} | {total('false keep')} "
                      f"| {total('false ambiguous')} |")
     lines += ["", "Consensus counts a run that agrees as so many coincidences, and where true loops "
-              "are few and far", "between it may outvote them at scales that it learns; where whole "
-              "runs follow the way their loops agree", "better with each other than any true one "
-              "does with odometry, and most are kept. GNC holds to the file's",
-              "scales, which are right here; where they are not see [Do no harm](harm.md)."]
+              "are few and far", "between it may outvote them at scales that it learns, or by slips "
+              "of odometry before and after it, as", "far as a robot moves in a step. GNC holds to the "
+              "file's scales, which are right here; where they are", "not see "
+              "[Do no harm](harm.md)."]
     return "\n".join(lines) + "\n"
 
 
