@@ -135,12 +135,11 @@ BiasPrior<Pose> Objective<Pose>::bias_prior(const Explanation<Pose>& explanation
 template <class Pose>
 double Objective<Pose>::log_slips(const Explanation<Pose>& explanation) const {
   const auto& shapes = explanation.shapes;
-  const typename Pose::Tangent root = shapes.odometry.cwiseSqrt();
   double sum = log_prior_of(shapes.slips);
   for (std::size_t v = 0; v < shapes.slips.size(); ++v) {
     if (shapes.slips[v] == 0) continue;
     const auto& edge = *chain_[v];
-    const typename Pose::Matrix Sigma = root.asDiagonal() * edge.covariance * root.asDiagonal();
+    const auto Sigma = shaped(edge, shapes.odometry);
     sum += slipped<Pose>(edge, Sigma, shapes.slips[v], shapes.slip_scale).log_motion;
   }
   return sum;

@@ -28,9 +28,8 @@ void slip(const Shapes<Pose>& shapes, const std::vector<std::optional<Index>>& e
           const Chain<Pose>& chain, PoseGraph<Pose>& graph) {
   for (std::size_t v = 0; v < edges.size(); ++v) {
     if (shapes.slips[v] == 0) continue;
-    auto& information = graph.constraints[*edges[v]].information;
-    const typename Pose::Matrix Sigma = information.inverse();
-    information =
+    const auto Sigma = shaped(*chain[v], shapes.odometry);
+    graph.constraints[*edges[v]].information =
         slipped<Pose>(*chain[v], Sigma, shapes.slips[v], shapes.slip_scale).covariance.inverse();
   }
 }

@@ -30,6 +30,13 @@ using Chain = std::vector<std::optional<ChainEdge<Pose>>>;
 template <class Pose>
 Chain<Pose> chain_of(const PoseGraph<Pose>& graph, const EdgeRoles& roles);
 
+/// Its covariance with factors on the variances of its coordinates.
+template <class Pose>
+typename Pose::Matrix shaped(const ChainEdge<Pose>& edge, const typename Pose::Tangent& shape) {
+  const typename Pose::Tangent root = shape.cwiseSqrt();
+  return root.asDiagonal() * edge.covariance * root.asDiagonal();
+}
+
 /// What is believed of an edge's error if it slips.
 template <class Pose>
 struct SlippedEdge {
@@ -73,13 +80,11 @@ void visit_edges(const ContractedChain<Pose>& odometry, std::size_t k, Visit&& v
   using Matrix = typename Pose::Matrix;
   const auto& [chain, shape, slips, bias, reduced] = odometry;
   const Link<Pose>& step = reduced.steps[k];
-  const typename Pose::Tangent root = shape.cwiseSqrt();
   Pose onward;  // from the edge's end to the step's
   for (Index v = reduced.vertex[step.b] - 1; v >= reduced.vertex[step.a]; --v) {
     const ChainEdge<Pose>& edge = *chain[v];
-    const Matrix Sigma = root.asDiagonal() * edge.covariance * root.asDiagonal();
     const Pose from_start = turned(edge.T, bias) * onward;
-    visit(v, Matrix((edge.forward ? onward : from_start).inverse().adjoint()), Sigma);
+    visit(v, Matrix((edge.forward ? onward : from_start).inverse().adjoint()), shaped(edge, shape));
     onward = from_start;
   }
 }
