@@ -1,15 +1,17 @@
 # One way to define a library of ours, so that flags, include roots, install
 # rules and the exported name are the same for every layer.
 
-# Where CMAKE_UNITY_BUILD is on, the sources of one folder are compiled as one: what they
-# include and instantiate is then compiled once. A folder's files hence share one
-# unnamed namespace.
-function(isotherm_unite_by_folder target)
+# Where CMAKE_UNITY_BUILD is on, the sources of a room, with all folders in it, are compiled as
+# one: what they include and instantiate is then compiled once. They hence share one unnamed
+# namespace.
+function(isotherm_unite_by_room target)
   get_target_property(sources ${target} SOURCES)
   foreach(source IN LISTS sources)
     if(NOT IS_ABSOLUTE "${source}")
       cmake_path(GET source PARENT_PATH folder)
-      string(MAKE_C_IDENTIFIER "in_${folder}" group)
+      string(REGEX REPLACE "^src/" "" folder "${folder}")
+      string(REGEX REPLACE "/.*" "" room "${folder}")
+      string(MAKE_C_IDENTIFIER "in_${room}" group)
       set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
     endif()
   endforeach()
@@ -18,7 +20,7 @@ endfunction()
 
 # Options every target of the project is compiled with; never exported.
 function(isotherm_compile_options target)
-  isotherm_unite_by_folder(${target})
+  isotherm_unite_by_room(${target})
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion

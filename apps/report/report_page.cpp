@@ -1,6 +1,9 @@
 #include "report/report_page.hpp"
 
 #include <stdexcept>
+#include <string_view>
+
+#include "report/report_template.hpp"
 
 namespace isotherm::apps {
 namespace {

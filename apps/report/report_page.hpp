@@ -1,14 +1,10 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "option_flags.hpp"
 
 namespace isotherm::apps {
-
-/// The page without data: viewer/dist/report.html, built into the program.
-std::string_view report_template();
 
 /// One self-contained HTML page that shows `document`. No text in the document can
 /// end the element that holds it or run as script: every `<` is escaped.

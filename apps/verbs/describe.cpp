@@ -38,7 +38,7 @@ void add_report(Json& json, const ReadReport& report) {
   json["diagnostics"] = std::move(found);
 }
 
-Json to_json(const InformationHealth& health) {
+Json health_as_json(const InformationHealth& health) {
   return {{"edges", health.edges},
           {"distinct", health.distinct},
           {"singular", health.singular},
@@ -48,7 +48,7 @@ Json to_json(const InformationHealth& health) {
           {"median_rotation_sigma_rad", health.median_rotation_sigma}};
 }
 
-Json to_json(const OdometryDrift& drift) {
+Json drift_as_json(const OdometryDrift& drift) {
   return {{"path_length_m", drift.path_length},   {"mean_distance_m", drift.mean_distance},
           {"max_distance_m", drift.max_distance}, {"max_at_vertex", drift.max_vertex},
           {"end_distance_m", drift.end_distance}, {"end_rotation_rad", drift.end_rotation}};
@@ -72,9 +72,9 @@ void add_summary(Json& json, const GraphSummary& summary) {
                           {"largest_component", summary.largest_component},
                           {"isolated_vertices", summary.isolated_vertices},
                           {"odometry_chains", summary.odometry_chains}};
-  json["information"] = {{"odometry", to_json(summary.odometry_information)},
-                         {"candidates", to_json(summary.candidate_information)}};
-  json["drift"] = summary.drift ? to_json(*summary.drift) : Json();
+  json["information"] = {{"odometry", health_as_json(summary.odometry_information)},
+                         {"candidates", health_as_json(summary.candidate_information)}};
+  json["drift"] = summary.drift ? drift_as_json(*summary.drift) : Json();
   json["suspicious"] = summary.suspicious;
   Json found = Json::array();
   for (const auto& suspicion : summary.suspicions) {

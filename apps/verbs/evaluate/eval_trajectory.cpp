@@ -15,7 +15,7 @@ namespace {
 
 using namespace slam;
 
-Json to_json(const ErrorStatistics& errors) {
+Json errors_as_json(const ErrorStatistics& errors) {
   return {{"mean", errors.mean},  {"rmse", errors.rmse}, {"median", errors.median},
           {"max", errors.max},    {"min", errors.min},   {"std", errors.std},
           {"pairs", errors.pairs}};
@@ -44,7 +44,7 @@ struct EvalAte : OptionVerb<NoOptions> {
                        fmt::format("ATE, align {}: {}{}\n", alignment, line_of(errors, "m"), note));
           }
           Json json = {{"schema", "isotherm.eval.ate/1"}, {"align", alignment}};
-          json.update(to_json(errors));
+          json.update(errors_as_json(errors));
           write_json(flags.json, json);
         },
         any);
@@ -68,8 +68,8 @@ struct EvalRpe : OptionVerb<RelativeErrorOptions> {
           }
           Json json = {{"schema", "isotherm.eval.rpe/1"}};
           json.update(options_to_json(options));
-          json.update(to_json(errors.translation));
-          json["rotation"] = to_json(errors.rotation);
+          json.update(errors_as_json(errors.translation));
+          json["rotation"] = errors_as_json(errors.rotation);
           write_json(flags.json, json);
         },
         any);

@@ -18,7 +18,8 @@ PointAlignment align_points(const Eigen::MatrixXd& from, const Eigen::MatrixXd& 
   const Eigen::VectorXd centre_to = to.rowwise().mean();
   const Eigen::MatrixXd cross =
       (to.colwise() - centre_to) * (from.colwise() - centre_from).transpose();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::NoQRPreconditioner> svd(
+      cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
   result.rotation = svd.matrixU() * svd.matrixV().transpose();
   result.translation = centre_to - result.rotation * centre_from;
   result.residual = (to - result.apply(from)).squaredNorm();

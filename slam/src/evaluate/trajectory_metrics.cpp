@@ -4,10 +4,11 @@
 #include <cmath>
 #include <string>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/statistics.hpp"
+#include "matrices/nearest_rotation.hpp"
 
 namespace isotherm::slam {
 namespace {
@@ -40,17 +41,13 @@ Pose least_squares_motion(const PosePairs<Pose>& pairs) {
   truth.colwise() -= truth_mean;
 
   const Eigen::MatrixXd covariance = truth * estimate.transpose();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(covariance,
-                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const detail::NearestRotation nearest = detail::nearest_rotation(covariance);
   // All but one singular value must be there to fix the rotation.
   const double scale = estimate.norm() * truth.norm();
-  if (!(svd.singularValues()[kDim - 2] > 1e-15 * scale)) {
+  if (!(nearest.singular_values[kDim - 2] > 1e-15 * scale)) {
     throw InvalidArgument("align", "the positions leave the rotation open; use first or none");
   }
-  Eigen::VectorXd sign = Eigen::VectorXd::Ones(kDim);
-  if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) sign[kDim - 1] = -1.0;
-  const Eigen::Matrix<double, kDim, kDim> rotation =
-      svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+  const Eigen::Matrix<double, kDim, kDim> rotation = nearest.rotation;
   const Eigen::Matrix<double, kDim, 1> translation = truth_mean - rotation * estimate_mean;
   return make_pose(rotation, translation);
 }

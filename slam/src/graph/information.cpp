@@ -29,8 +29,9 @@ Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, Dof, Dof>> scaled_eigen(
     const Eigen::Matrix<double, Dof, Dof>& information,
     const Eigen::Matrix<double, Dof, 1>& scale) {
   const Eigen::Matrix<double, Dof, 1> inverse = scale.cwiseInverse();
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, Dof, Dof>>(
-      inverse.asDiagonal() * information * inverse.asDiagonal());
+  const Eigen::Matrix<double, Dof, Dof> scaled =
+      inverse.asDiagonal() * information * inverse.asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, Dof, Dof>>(scaled);
 }
 
 }  // namespace

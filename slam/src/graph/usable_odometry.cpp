@@ -35,8 +35,8 @@ template <class Pose>
 Eigen::SelfAdjointEigenSolver<typename Pose::Matrix> relative_eigen(
     const typename Pose::Matrix& information, const typename Pose::Tangent& typical) {
   const typename Pose::Tangent inverse = typical.cwiseInverse();
-  return Eigen::SelfAdjointEigenSolver<typename Pose::Matrix>(inverse.asDiagonal() * information *
-                                                              inverse.asDiagonal());
+  const typename Pose::Matrix relative = inverse.asDiagonal() * information * inverse.asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<typename Pose::Matrix>(relative);
 }
 
 }  // namespace

@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include "isotherm/base/text_writer.hpp"
+#include "matrices/nearest_rotation.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -149,8 +149,7 @@ Eigen::Quaterniond PoseFields::nearest_rotation(const Eigen::Matrix3d& matrix,
   } else if (error > kUnitSquaredNorm) {
     ++rounded_matrices_;
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Matrix3d nearest = svd.matrixU() * svd.matrixV().transpose();
+  const Eigen::Matrix3d nearest = detail::nearest_rotation(matrix).rotation;
   return Eigen::Quaterniond(nearest).normalized();
 }
 

@@ -1,8 +1,15 @@
 #include "matrices/decompositions.hpp"
 
-template class Eigen::LLT<Eigen::Matrix<double, 3, 3>>;
-template class Eigen::LLT<Eigen::Matrix<double, 6, 6>>;
-template class Eigen::PartialPivLU<Eigen::Matrix<double, 3, 3>>;
-template class Eigen::PartialPivLU<Eigen::Matrix<double, 6, 6>>;
-template class Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 3, 3>>;
-template class Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>;
+namespace Eigen {
+
+template LLT<Matrix3d>& LLT<Matrix3d>::compute(const EigenBase<Matrix3d>&);
+template LLT<Matrix<double, 6, 6>>& LLT<Matrix<double, 6, 6>>::compute(
+    const EigenBase<Matrix<double, 6, 6>>&);
+template void PartialPivLU<Matrix3d>::compute();
+template void PartialPivLU<Matrix<double, 6, 6>>::compute();
+template SelfAdjointEigenSolver<Matrix3d>& SelfAdjointEigenSolver<Matrix3d>::compute(
+    const EigenBase<Matrix3d>&, int);
+template SelfAdjointEigenSolver<Matrix<double, 6, 6>>&
+SelfAdjointEigenSolver<Matrix<double, 6, 6>>::compute(const EigenBase<Matrix<double, 6, 6>>&, int);
+
+}  // namespace Eigen

@@ -2,12 +2,13 @@
 
 #include <queue>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include "graph/gauge.hpp"
 #include "isotherm/base/error.hpp"
 #include "isotherm/slam/optimize/robust_kernel.hpp"
 #include "isotherm/spectral/sparse/block_cholesky.hpp"
+#include "matrices/nearest_rotation.hpp"
 #include "optimize/robust_minimize.hpp"
 
 namespace isotherm::slam {
@@ -75,15 +76,6 @@ std::vector<Pose> follow_tree(const PoseGraph<Pose>& graph, const std::vector<bo
 
 template <class Pose>
 using Rotation = Eigen::Matrix<double, Pose::kDim, Pose::kDim>;
-
-template <class Pose>
-Rotation<Pose> nearest_rotation(const Rotation<Pose>& matrix) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Rotation<Pose> sign = Rotation<Pose>::Identity();
-  const double determinant = svd.matrixU().determinant() * svd.matrixV().determinant();
-  sign(Pose::kDim - 1, Pose::kDim - 1) = determinant < 0.0 ? -1.0 : 1.0;
-  return svd.matrixU() * sign * svd.matrixV().transpose();
-}
 
 Pose2 make_pose(const Eigen::Vector2d& translation, const Eigen::Matrix2d& rotation) {
   return {translation, std::atan2(rotation(1, 0), rotation(0, 0))};
@@ -194,7 +186,7 @@ std::vector<Pose> chordal_poses(const PoseGraph<Pose>& graph, std::vector<Pose> 
   }
   values = rotations.solve(std::move(values));
   std::vector<Rotation<Pose>> rotation;
-  for (const auto& value : values) rotation.push_back(nearest_rotation<Pose>(value.transpose()));
+  for (const auto& value : values) rotation.push_back(detail::nearest_rotation(value.transpose()).rotation);
 
   VertexSystem translations(1, kDim, gauge, ends);
   std::vector<Eigen::MatrixXd> places;

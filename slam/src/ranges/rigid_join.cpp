@@ -269,7 +269,8 @@ Pose mirror_image(const std::vector<BodyRange<Pose>>& ranges, const Pose& point)
   Eigen::Matrix<double, Pose::kDim, Pose::kDim> spread;
   spread.setZero();
   for (const auto& range : ranges) spread += (range.a - centre) * (range.a - centre).transpose();
-  const Eigen::SelfAdjointEigenSolver<decltype(spread)> axes(spread);
+  Eigen::SelfAdjointEigenSolver<decltype(spread)> axes;
+  axes.computeDirect(spread);
   const Translation normal = axes.eigenvectors().col(0);  // of the least eigenvalue
   const Translation place = point.translation();
   return with_place(point, place - 2.0 * normal.dot(place - centre) * normal);

@@ -25,8 +25,8 @@ namespace isotherm::spectral::detail {
 namespace {
 
 template <class Function, class View, class ConstView, class Scalar>
-void multiply(Function gemm, const char* transpose_a, View& C, Scalar scale, const ConstView& A,
-              const ConstView& B) {
+void add_scaled_product(Function gemm, const char* transpose_a, View& C, Scalar scale,
+                        const ConstView& A, const ConstView& B) {
   if (C.size() == 0 || B.rows() == 0) return;
   const int rows = static_cast<int>(C.rows());
   const int columns = static_cast<int>(C.cols());
@@ -42,22 +42,22 @@ void multiply(Function gemm, const char* transpose_a, View& C, Scalar scale, con
 }  // namespace
 
 void add_product(DenseView C, double scale, const ConstDenseView& A, const ConstDenseView& B) {
-  multiply(dgemm_, "N", C, scale, A, B);
+  add_scaled_product(dgemm_, "N", C, scale, A, B);
 }
 
 void add_product(ComplexView C, double scale, const ConstComplexView& A,
                  const ConstComplexView& B) {
-  multiply(zgemm_, "N", C, std::complex<double>(scale), A, B);
+  add_scaled_product(zgemm_, "N", C, std::complex<double>(scale), A, B);
 }
 
 void add_transposed_product(DenseView C, double scale, const ConstDenseView& A,
                             const ConstDenseView& B) {
-  multiply(dgemm_, "T", C, scale, A, B);
+  add_scaled_product(dgemm_, "T", C, scale, A, B);
 }
 
 void add_transposed_product(ComplexView C, double scale, const ConstComplexView& A,
                             const ConstComplexView& B) {
-  multiply(zgemm_, "T", C, std::complex<double>(scale), A, B);
+  add_scaled_product(zgemm_, "T", C, std::complex<double>(scale), A, B);
 }
 
 namespace {

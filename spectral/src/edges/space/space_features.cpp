@@ -35,12 +35,12 @@ struct Occupied {
 /// The more vertices, the more each place is held by others, and the less one run tells than many.
 /// Two are needed to see two ends that a vertex may hang on.
 int affordable_runs(Index vertex_count) {
-  constexpr double kBudget = 2e8;  // pairs that are looked at
+  constexpr double kPairBudget = 2e8;  // pairs that are looked at
   constexpr double kFewestRuns = 2.0, kMostRuns = 4.0;
   constexpr Index kMostVertices = 1400;
   if (vertex_count > kMostVertices) return 0;
   const auto count = static_cast<double>(vertex_count);
-  const double runs = kBudget / (0.5 * count * count * sampling_steps());
+  const double runs = kPairBudget / (0.5 * count * count * sampling_steps());
   return static_cast<int>(std::clamp(runs, kFewestRuns, kMostRuns));
 }
 

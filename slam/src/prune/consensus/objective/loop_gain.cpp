@@ -95,7 +95,8 @@ class Density {
 
  private:
   Eigen::LLT<typename Pose::Matrix> variance(double own) const {
-    return Eigen::LLT<typename Pose::Matrix>(others_.P + own * Sigma_);
+    const typename Pose::Matrix all = others_.P + own * Sigma_;
+    return Eigen::LLT<typename Pose::Matrix>(all);
   }
 
   const Belief<Pose>& others_;
@@ -127,7 +128,8 @@ Belief<Pose> without(const Belief<Pose>& with, const typename Pose::Matrix& Omeg
   const Eigen::LLT<Matrix> root(Omega);
   const Matrix L = root.matrixL();
   const Matrix fitted = L.transpose() * with.P * L;
-  const Eigen::LLT<Matrix> rest(Matrix::Identity() - fitted);
+  const Matrix unfitted = Matrix::Identity() - fitted;
+  const Eigen::LLT<Matrix> rest(unfitted);
   if (rest.info() == Eigen::Success && log_determinant(rest) > std::log(kLeastShare)) {
     const Matrix half = rest.matrixL().solve(L.transpose() * with.P);
     const typename Pose::Tangent own = rest.matrixL().solve(L.transpose() * with.r);

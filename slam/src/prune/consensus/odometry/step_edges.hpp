@@ -54,7 +54,8 @@ SlippedEdge<Pose> slipped(const ChainEdge<Pose>& edge, const typename Pose::Matr
                           std::size_t slip, double scale) {
   if (slip == 0) return {Sigma, 0.0};
   using Matrix = typename Pose::Matrix;
-  const Eigen::LLT<Matrix> told(slip_factor(slip) * Sigma);
+  const Matrix wide = slip_factor(slip) * Sigma;
+  const Eigen::LLT<Matrix> told(wide);
   Matrix information = told.solve(Matrix::Identity());
   information.diagonal() += scale * edge.motion.cwiseInverse();
   const Eigen::LLT<Matrix> both(information);
