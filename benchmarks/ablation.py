@@ -76,6 +76,7 @@ MOVES = {
         (SLIPS, "::as_if_accurate() {\n", "if ({off}) return false;"),
     "all accepted that are not false beyond doubt":
         (CLIMB, "::accept_undecided() {\n", "if ({off}) return false;"),
+    "runs in doubt dropped": (CLIMB, "::drop_doubted_run() {\n", "if ({off}) return false;"),
     "the map drawn anew": (CLIMB, "::draw_anew() {\n", "if ({off}) return;"),
     "climbs ended where an earlier one passed": (CLIMB, "::peak_ahead(bool learnt) {\n",
                                                  "if ({off}) return nullptr;"),

@@ -333,6 +333,33 @@ TEST(Search, IsNotLedAstrayByFalseLoopsThatAgreeWithEachOther) {
   }
 }
 
+// Two false loops in a row that tell the same draw the map to them, and beside the other each looks
+// true.
+TEST(Climb, DropsARunThatHoldsTheMap) {
+  Random random(2);
+  auto [graph, truth] = random_loop_graph<Pose2>(random, 150, 60, 1.0);
+  std::vector<bool> truly(60, true);
+  Index alone = 60;
+  while (ends_a_loop(graph, alone)) ++alone;
+  for (const Index next : {0, 1}) {
+    auto loop = graph.constraints.back();
+    loop.from = alone + next;
+    loop.to = alone + 40 + next;
+    loop.T_from_to = truth[loop.from].between(truth[loop.to]);
+    isotherm_test::slip(loop, 14.0);
+    graph.constraints.push_back(loop);
+    truly.push_back(false);
+  }
+  const Objective<Pose2> objective(graph, edge_roles(graph), kWindow);
+  Climb<Pose2> climb(objective, kOptions, kSilent);
+  const auto held = climb.settled_on(std::vector<bool>(truly.size(), true), {});
+  climb.stand_at(held);
+  const Standpoint<Pose2> there{held, climb.assessment().findings()};
+  for (std::size_t k = 60; k < truly.size(); ++k) EXPECT_GT(held.standings[k].log_odds, 0.0) << k;
+  Climb<Pose2> other(objective, kOptions, kSilent);
+  EXPECT_EQ(other.from(there).accepted, truly);
+}
+
 // From the first of kStarts no loop is found true.
 TEST(Search, GoesFarWhereNoStartLeadsAnywhere) {
   auto ring = simulate_ring({.poses = 400, .measurements = {.loops = 30}, .seed = 3}).graph;

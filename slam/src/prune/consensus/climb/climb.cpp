@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -171,7 +172,7 @@ template <class Pose>
 const Explanation<Pose>& Climb<Pose>::settle(const std::vector<bool>& accepted) {
   at_.now.accepted = accepted;
   at_.assess();
-  while (at_.learn_more_than(0.0) || weigh_anew() || at_.find_slips()) {
+  while (at_.learn_more_than(0.0) || explain_the_same_better()) {
   }
   return at_.now;
 }
@@ -271,8 +272,9 @@ template <class Pose>
 bool Climb<Pose>::move() {
   if (shift() || at_.learn_more_than(0.0)) return true;
   if (!to_the_last_ && at_.is_highest() && none_in_doubt(at_.now)) return false;
-  return weigh_anew() || at_.find_slips() ||
-         at_.once(Trial::undecided, [this] { return accept_undecided(); });
+  return explain_the_same_better() ||
+         at_.once(Trial::undecided, [this] { return accept_undecided(); }) ||
+         (at_.is_highest() && at_.once(Trial::doubted, [this] { return drop_doubted_run(); }));
 }
 
 // The same at about these scales.
@@ -320,10 +322,11 @@ bool Climb<Pose>::weigh_afar() {
          at_.try_with(scales_of(wider), {.learning = true});
 }
 
+// By other weights, slips or scales.
 template <class Pose>
-bool Climb<Pose>::weigh_anew() {
+bool Climb<Pose>::explain_the_same_better() {
   return at_.once(Trial::weights_by_others, [this] { return weigh_by_others(); }) ||
-         at_.once(Trial::afar, [this] { return weigh_afar(); });
+         at_.find_slips() || at_.once(Trial::afar, [this] { return weigh_afar(); });
 }
 
 // All loops that are not false beyond doubt: where a part of the map is off each of them speaks for
@@ -341,6 +344,26 @@ bool Climb<Pose>::accept_undecided() {
   if (loops.empty() || !at_.try_with(take, {.learning = true})) return false;
   note(loops.size(), 0);
   return true;
+}
+
+// Loops of a run hold each other, and the map: each by itself looks true beside the others. Only
+// where nothing higher was found, since a trial of each run takes time.
+template <class Pose>
+bool Climb<Pose>::drop_doubted_run() {
+  std::vector<bool> doubted(at_.now.accepted.size());
+  for (std::size_t k = 0; k < doubted.size(); ++k) {
+    doubted[k] = at_.now.accepted[k] && at_.now.standings[k].log_odds < beyond_doubt();
+  }
+  auto runs = groups_of(at_.assessment, at_.now, doubted);
+  const auto gain = [this](const Group& run) { return gain_of_dropping(run.loops); };
+  std::ranges::stable_sort(runs, std::greater{}, gain);
+  for (const Group& run : runs) {
+    const auto drop = [&](auto&) { at_.take_as(run.loops, false); };
+    if (!at_.try_with(drop, {.learning = true})) continue;
+    note(0, run.loops.size());
+    return true;
+  }
+  return false;
 }
 
 // Steps that do not settle may be on the way to another minimum than the least.

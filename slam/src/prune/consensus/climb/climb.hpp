@@ -109,10 +109,11 @@ class Climb {
   std::vector<Group> gaining_groups() const;
   Group next_batch() const;
   void accept(const Selection& loops);
-  bool weigh_anew();
+  bool explain_the_same_better();
   bool weigh_by_others();
   bool weigh_afar();
   bool accept_undecided();
+  bool drop_doubted_run();
   void draw_anew();
   void note(std::size_t accepted, std::size_t dropped);
   void tell_progress() const;

@@ -39,7 +39,16 @@ class Position {
   using Change = std::function<void(Explanation<Pose>&)>;
 
   /// Trials that are not repeated where they failed until something changes.
-  enum Trial { lesson, lesson_of_scales, slips, weights_by_others, afar, undecided, trials };
+  enum Trial {
+    lesson,
+    lesson_of_scales,
+    slips,
+    weights_by_others,
+    afar,
+    undecided,
+    doubted,
+    trials
+  };
 
   /// `objective` must outlive this object.
   Position(const Objective<Pose>& objective, bool calibrate, Pace pace, int threads);
