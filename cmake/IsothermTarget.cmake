@@ -43,7 +43,7 @@ function(isotherm_compile_options target)
   endif()
 endfunction()
 
-# For what only reads flags and writes what the libraries found: a third less to compile.
+# For commands and tests, which do little but call the libraries: a third less to compile.
 function(isotherm_optimise_lightly target)
   target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O1>)
 endfunction()
