@@ -10,8 +10,6 @@ namespace isotherm::spectral::distributed {
 namespace detail {
 namespace {
 
-constexpr Index kNone = -1;
-
 /// What of the graph can decide over bridges beyond this rank: an edge stands for one between
 /// ranks, or for a chain of this rank's bridges of which all are bridges or none is.
 struct Link {
