@@ -186,8 +186,9 @@ std::vector<Pose> chordal_poses(const PoseGraph<Pose>& graph, std::vector<Pose> 
   }
   values = rotations.solve(std::move(values));
   std::vector<Rotation<Pose>> rotation;
-  for (const auto& value : values)
+  for (const auto& value : values) {
     rotation.push_back(detail::nearest_rotation(value.transpose()).rotation);
+  }
 
   VertexSystem translations(1, kDim, gauge, ends);
   std::vector<Eigen::MatrixXd> places;

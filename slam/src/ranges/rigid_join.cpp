@@ -270,7 +270,7 @@ Pose mirror_image(const std::vector<BodyRange<Pose>>& ranges, const Pose& point)
   spread.setZero();
   for (const auto& range : ranges) spread += (range.a - centre) * (range.a - centre).transpose();
   Eigen::SelfAdjointEigenSolver<decltype(spread)> axes;
-  axes.computeDirect(spread);
+  axes.computeDirect(spread);  // in closed form: it is a start, and takes far less to compile
   const Translation normal = axes.eigenvectors().col(0);  // of the least eigenvalue
   const Translation place = point.translation();
   return with_place(point, place - 2.0 * normal.dot(place - centre) * normal);

@@ -113,6 +113,23 @@ bool ends_a_loop(const PoseGraph<Pose>& graph, Index vertex) {
   });
 }
 
+// Adds a false loop for each of `slips`, in a row where no other ends, that is off by so many
+// deviations.
+template <class Pose>
+void add_false_row(const std::vector<double>& slips, PoseGraph<Pose>& graph,
+                   const std::vector<Pose>& truth) {
+  Index from = 60;
+  while (ends_a_loop(graph, from)) ++from;
+  for (const double deviations : slips) {
+    auto loop = graph.constraints.back();
+    loop.from = from++;
+    loop.to = loop.from + 40;
+    loop.T_from_to = truth[loop.from].between(truth[loop.to]);
+    isotherm_test::slip(loop, deviations);
+    graph.constraints.push_back(loop);
+  }
+}
+
 template <class Pose>
 class SlippingOf : public testing::Test {};
 TYPED_TEST_SUITE(SlippingOf, Poses);
@@ -153,17 +170,8 @@ TYPED_TEST(SlippingOf, IsNotBelievedOfALoopThatAloneTellsIt) {
   Random random(Pose::kDim == 2 ? 16 : 15);
   auto [graph, truth] = random_loop_graph<Pose>(random, 150, 80, 1.0);
   std::vector<bool> truly(edge_roles(graph).candidates.size(), true);
-  Index alone = 60;
-  while (ends_a_loop(graph, alone)) ++alone;
-  for (const Index next : {0, 1, 2}) {
-    auto loop = graph.constraints.back();
-    loop.from = alone + next;
-    loop.to = alone + 40 + next;
-    loop.T_from_to = truth[loop.from].between(truth[loop.to]);
-    isotherm_test::slip(loop, 40.0 * (1 + next));
-    graph.constraints.push_back(loop);
-    truly.push_back(false);
-  }
+  add_false_row({40.0, 80.0, 120.0}, graph, truth);
+  truly.resize(truly.size() + 3, false);
   const Objective<Pose> objective(graph, edge_roles(graph), kWindow);
   Climb<Pose> climb(objective, kOptions, kSilent);
   EXPECT_EQ(search(climb).front().accepted, truly);
@@ -338,18 +346,9 @@ TEST(Search, IsNotLedAstrayByFalseLoopsThatAgreeWithEachOther) {
 TEST(Climb, DropsARunThatHoldsTheMap) {
   Random random(2);
   auto [graph, truth] = random_loop_graph<Pose2>(random, 150, 60, 1.0);
+  add_false_row({14.0, 14.0}, graph, truth);
   std::vector<bool> truly(60, true);
-  Index alone = 60;
-  while (ends_a_loop(graph, alone)) ++alone;
-  for (const Index next : {0, 1}) {
-    auto loop = graph.constraints.back();
-    loop.from = alone + next;
-    loop.to = alone + 40 + next;
-    loop.T_from_to = truth[loop.from].between(truth[loop.to]);
-    isotherm_test::slip(loop, 14.0);
-    graph.constraints.push_back(loop);
-    truly.push_back(false);
-  }
+  truly.resize(62, false);
   const Objective<Pose2> objective(graph, edge_roles(graph), kWindow);
   Climb<Pose2> climb(objective, kOptions, kSilent);
   const auto held = climb.settled_on(std::vector<bool>(truly.size(), true), {});
