@@ -77,15 +77,15 @@ MOVES = {
     "all accepted that are not false beyond doubt":
         (CLIMB, "::accept_undecided() {\n", "if ({off}) return false;"),
     "runs in doubt dropped": (CLIMB, "::drop_doubted_run() {\n", "if ({off}) return false;"),
-    "the map drawn anew": (CLIMB, "::draw_anew() {\n", "if ({off}) return;"),
-    "climbs ended where an earlier one passed": (CLIMB, "::peak_ahead(bool learnt) {\n",
-                                                 "if ({off}) return nullptr;"),
+    "climbs ended where an earlier one passed":
+        ("climb/peaks.cpp", "::beyond(const Explanation<Pose>& now) const {\n",
+         "if ({off}) return nullptr;"),
     "the search ended where no loop is in doubt":
         (CLIMB, "::none_in_doubt(const Explanation<Pose>& found) const {\n",
          "if ({off}) return false;"),
     "scales settled anew":
-        ("search/search.cpp", "void settle_anew(Climb<Pose>& climb, "
-         "std::vector<Explanation<Pose>>& found) {\n", "if ({off}) return;"),
+        ("search/starts.hpp", "void settle_on(Climb<Pose>& climb, const std::vector<bool> accepted,\n"
+         "               std::vector<Explanation<Pose>>& found) {\n", "if ({off}) return;"),
 }
 MODEL_MOVES = ("the bias of odometry", "labels in runs")  # of the objective, not of the search
 STARTS = ["as stated", "odometry x 100", "loops x 0.01", "both x 0.01"]

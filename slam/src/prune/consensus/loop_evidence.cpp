@@ -38,12 +38,8 @@ double highest_evidence(const PoseGraph<Pose>& graph, const EdgeRoles& roles,
   const detail::Objective<Pose> objective(graph, roles, options.window, options.calibrate);
   detail::Climb<Pose> climb(objective, options, run);
   std::vector<detail::Explanation<Pose>> found;
-  detail::climb_from_each_start(options.calibrate, [&](const auto& start) {
-    found.push_back(climb.settled_on(accepted, start));
-  });
-  if (found.empty()) return -std::numeric_limits<double>::infinity();
-  const auto& best = detail::best_of(found);
-  return options.calibrate ? settled_on_either_side(climb, best).evidence : best.evidence;
+  settle_on(climb, accepted, found);
+  return found.empty() ? -std::numeric_limits<double>::infinity() : best_of(found).evidence;
 }
 
 }  // namespace

@@ -85,27 +85,6 @@ TYPED_TEST(EstimateOf, ContractionKeepsTheOptimum) {
   }
 }
 
-// Loops without errors, and odometry so far off that steps from there would end elsewhere.
-TYPED_TEST(EstimateOf, DrawsTheMapAnewWhateverThePosesWere) {
-  using Pose = TypeParam;
-  Random random(17);
-  auto made = random_loop_graph<Pose>(random, 60, 120, 0.0);
-  const auto roles = edge_roles(made.graph);
-  for (const Index edge : roles.odometry) {
-    auto& step = made.graph.constraints[edge];
-    step.T_from_to = step.T_from_to * Pose::exp(Pose::Tangent::Constant(0.3));
-    step.information *= 1e-8;
-  }
-  const auto reduced = reduce(made.graph, roles);
-  Estimate<Pose> estimate(reduced);
-  const std::vector<bool> all(reduced.loops.size(), true);
-  const auto drawn = estimate.relaxed(all, {}).poses;
-  for (const auto& loop : reduced.loops) {
-    const Pose error = loop.T_a_b.inverse() * (drawn[loop.a].inverse() * drawn[loop.b]);
-    EXPECT_LT(error.log().norm(), 1e-3);
-  }
-}
-
 TYPED_TEST(EstimateOf, DrawsMapsOfTheCovarianceThatPosesHave) {
   using Pose = TypeParam;
   using Matrix = typename Pose::Matrix;

@@ -78,11 +78,6 @@ class Assessment {
   /// The next assessment starts from this layout.
   void stand_on(const typename Estimate<Pose>::Layout& layout) { estimate_.restore(layout); }
 
-  /// Where `now` puts the poses if they are drawn anew. See Estimate.
-  typename Estimate<Pose>::Layout relaxed(const Explanation<Pose>& now) {
-    return estimate_.relaxed(now.accepted, now.scale);
-  }
-
   const Objective<Pose>& objective() const noexcept { return objective_; }
 
   const Estimate<Pose>& estimate() const noexcept { return estimate_; }

@@ -19,13 +19,6 @@ namespace {
 constexpr int kMostVain = 8;                     // moves in a row that find nothing better
 constexpr double kWorthTelling = 0.1 * kBetter;  // of scales that change no verdict
 
-bool is_part(const std::vector<bool>& part, const std::vector<bool>& whole) {
-  for (std::size_t k = 0; k < part.size(); ++k) {
-    if (part[k] && !whole[k]) return false;
-  }
-  return true;
-}
-
 // Whether an accepted loop is taken for less accurate than most.
 template <class Pose>
 bool any_is_worse(const Explanation<Pose>& found) {
@@ -193,29 +186,6 @@ const Explanation<Pose>* Climb<Pose>::nothing(double least) {
   return nothing_ && nothing_->evidence >= least ? &*nothing_ : nullptr;
 }
 
-// That of an earlier climb which passed here, which explains the same loops better, or which holds
-// all loops of this one and explains them better, by its scales and map too where those were
-// `learnt` from them; but not where this climb can learn better ones.
-template <class Pose>
-const Explanation<Pose>* Climb<Pose>::peak_ahead(bool learnt) {
-  if (const auto* beyond = at_.peaks.beyond(at_.now)) return beyond;
-  for (const auto& peak : at_.peaks.all()) {
-    if (at_.now.accepted == peak.accepted) {
-      if (!at_.outdoes(peak.evidence)) return &peak;
-    } else if (learnt && is_part(at_.now.accepted, peak.accepted)) {
-      std::optional<double> there;
-      at_.all_or_nothing([&] {
-        if (at_.try_with(scales_of(peak), {.gain = -kBetter, .from = &peak.layout})) {
-          there = at_.now.evidence;
-        }
-        return false;
-      });
-      if (there && !at_.outdoes(*there)) return &peak;
-    }
-  }
-  return nullptr;
-}
-
 template <class Pose>
 Explanation<Pose> Climb<Pose>::none_at(const CovarianceScale& scale) const {
   const std::size_t loops = objective_.stated().reduced.loops.size();
@@ -229,19 +199,13 @@ template <class Pose>
 void Climb<Pose>::start(Explanation<Pose> explanation) {
   at_.now = std::move(explanation);
   at_.assessment.start_over();
-  begin();
+  at_.begin();
 }
 
 template <class Pose>
 void Climb<Pose>::stand_on(Standpoint<Pose> standpoint) {
   at_.now = std::move(standpoint.explanation);
   at_.assessment.restore(at_.now, std::move(standpoint.found));
-  begin();
-}
-
-template <class Pose>
-void Climb<Pose>::begin() {
-  drawn_from_ = 0;
   at_.begin();
 }
 
@@ -253,11 +217,9 @@ const Explanation<Pose>* Climb<Pose>::grow() {
     tell_progress();
     const double before = at_.best.evidence;
     const std::size_t had = at_.now.accepted_count();
-    const bool settled = had == 0 || at_.assessment.estimate().settled();
-    if (!settled && had >= kMoreTelling * drawn_from_) draw_anew();
     const bool learnt =
         had >= kMoreTelling * at_.learnt_from() && at_.learn_more_than(gain_of_dropping(misfits()));
-    if (const auto* known = had > 0 ? peak_ahead(learnt) : nullptr) return known;
+    if (const auto* known = had > 0 ? at_.peaks.beyond(at_.now) : nullptr) return known;
     if (!learnt && !move()) return nullptr;
     const bool grows = 2 * at_.now.accepted_count() >= 3 * had;
     vain = grows || at_.best.evidence > before + kBetter ? 0 : vain + 1;
@@ -364,17 +326,6 @@ bool Climb<Pose>::drop_doubted_run() {
     return true;
   }
   return false;
-}
-
-// Steps that do not settle may be on the way to another minimum than the least.
-template <class Pose>
-void Climb<Pose>::draw_anew() {
-  drawn_from_ = at_.now.accepted_count();
-  try {
-    const auto relaxed = at_.assessment.relaxed(at_.now);
-    at_.try_with([](auto&) {}, {.from = &relaxed});
-  } catch (const NumericalError&) {  // nothing to start from
-  }
 }
 
 // Of the accepted loops that lower the evidence the worse half, and all that are at least half as

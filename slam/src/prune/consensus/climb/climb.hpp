@@ -95,10 +95,8 @@ class Climb {
   Explanation<Pose> none_at(const CovarianceScale& scale) const;
   void start(Explanation<Pose> explanation);
   void stand_on(Standpoint<Pose> standpoint);
-  void begin();
   Explanation<Pose> climb();
   void take_what_agrees(const Explanation<Pose>& none);
-  const Explanation<Pose>* peak_ahead(bool learnt);
   const Explanation<Pose>& settle(const std::vector<bool>& accepted);
   const Explanation<Pose>* grow();
   bool move();
@@ -114,7 +112,6 @@ class Climb {
   bool weigh_afar();
   bool accept_undecided();
   bool drop_doubted_run();
-  void draw_anew();
   void note(std::size_t accepted, std::size_t dropped);
   void tell_progress() const;
 
@@ -126,7 +123,6 @@ class Climb {
   std::optional<Explanation<Pose>> nothing_;
   double nothing_below_ = std::numeric_limits<double>::infinity();  // its evidence, where not known
   std::vector<Explanation<Pose>> doubted_;
-  std::size_t drawn_from_ = 0;  // loops, when the map was last drawn anew
   bool looks_afar_ = true;
   bool to_the_last_ = true;
   std::vector<ConsensusMove> moves_;

@@ -11,8 +11,6 @@ namespace isotherm::slam::detail {
 template <class Pose>
 class Peaks {
  public:
-  const std::vector<Explanation<Pose>>& all() const noexcept { return peaks_; }
-
   /// Whether no climb before has ended higher.
   bool none_above(double evidence) const {
     return std::ranges::all_of(peaks_, [&](const auto& peak) { return peak.evidence <= evidence; });

@@ -69,11 +69,10 @@ bool Position<Pose>::all_or_nothing(const std::function<bool()>& moves) {
 }
 
 template <class Pose>
-bool Position<Pose>::try_with(const Change& change, const TrialTerms<Pose>& terms) {
+bool Position<Pose>::try_with(const Change& change, TrialTerms terms) {
   const double least = now.evidence + terms.gain;
   return all_or_nothing([&] {
     change(now);
-    if (terms.from) assessment.stand_on(*terms.from);
     if (terms.learning) assessment.forget_nearness();
     return terms.learning ? assess() && outdoes(least) : assess(least);
   });

@@ -12,11 +12,9 @@
 
 namespace isotherm::slam::detail {
 
-/// What a trial is to gain, with the map sought from a layout, and by what can be learnt then.
-template <class Pose>
+/// What a trial is to gain, and whether by what can be learnt then.
 struct TrialTerms {
   double gain = kBetter;
-  const typename Estimate<Pose>::Layout* from = nullptr;
   bool learning = false;
 };
 
@@ -67,7 +65,7 @@ class Position {
   bool all_or_nothing(const std::function<bool()>& moves);
 
   /// Whether that gains as much, or else nothing changes.
-  bool try_with(const Change& change, const TrialTerms<Pose>& terms = {});
+  bool try_with(const Change& change, TrialTerms terms = {});
 
   /// Whether nothing higher was found, on the way or by an earlier climb.
   bool is_highest() const {

@@ -7,7 +7,6 @@
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/parallel.hpp"
 #include "isotherm/base/random.hpp"
-#include "isotherm/slam/optimize/initialize.hpp"
 #include "isotherm/spectral/sparse/block_covariance.hpp"
 #include "isotherm/spectral/sparse/earlier_factor.hpp"
 #include "matrices/decompositions.hpp"
@@ -123,33 +122,18 @@ void Estimate<Pose>::settle(const std::vector<bool>& accepted, const CovarianceS
                             int max_steps, const std::function<bool()>& reweigh) {
   lay_out(accepted);
   bool weighed = false;
-  settled_ = false;
-  for (int k = 0; k < max_steps && !settled_; ++k) {
+  bool settled = false;
+  for (int k = 0; k < max_steps && !settled; ++k) {
     linearize(scale);
     const double length = step();
     weighed = length < kNear;
-    settled_ = weighed && !reweigh() && length < kSettled;
+    settled = weighed && !reweigh() && length < kSettled;
   }
-  if (settled_ && factorised_) return;
+  if (settled && factorised_) return;
   if (!weighed) reweigh();
   linearize(scale);
   factorise();
   step();
-}
-
-template <class Pose>
-typename Estimate<Pose>::Layout Estimate<Pose>::relaxed(const std::vector<bool>& accepted,
-                                                        const CovarianceScale& scale) {
-  PoseGraph<Pose> used = used_links(accepted);
-  const std::size_t step_count = graph_->steps.size();
-  for (std::size_t k = 0; k < step_count; ++k) {
-    used.constraints[k].information /= scale.odometry;
-  }
-  for (std::size_t k = 0; k < used_loops_.size(); ++k) {
-    used.constraints[step_count + k].information = loop_information(k, scale);
-  }
-  used.poses = poses_;
-  return {initial_poses(used, EdgeRoles{}, Initialization::chordal), component_};
 }
 
 template <class Pose>

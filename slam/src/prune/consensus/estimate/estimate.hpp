@@ -50,20 +50,12 @@ class Estimate {
   /// change little with the loops accepted: the errors of each link are the same.
   std::vector<std::vector<Pose>> drawn(const CovarianceScale& scale, std::size_t count) const;
 
-  /// Whether the last update ended before its steps did.
-  bool settled() const noexcept { return settled_; }
-
   /// Where the poses are, without the factor there.
   struct Layout {
     std::vector<Pose> poses;
     std::vector<Index> component;
   };
   Layout layout() const { return {poses_, component_}; }
-
-  /// Where the chordal relaxation of odometry and the accepted loops has the poses, near the least
-  /// of many minima.
-  /// @throws NumericalError if its equations break down
-  Layout relaxed(const std::vector<bool>& accepted, const CovarianceScale& scale);
 
   /// Takes poses back to where they were; update() must follow.
   void restore(Layout layout);
@@ -145,7 +137,6 @@ class Estimate {
   std::optional<NormalEquations<Pose>> equations_;
   bool has_factor_ = false;  // the equations have one, if of other poses or information
   bool factorised_ = false;  // it is of these
-  bool settled_ = true;      // in the steps of the last update
   Pace pace_;                // whenever the equations were set up
 };
 

@@ -77,21 +77,6 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole,
   return standpoints;
 }
 
-// The loops that were found, better explained: by climbs from the sharpest scales that all begin at
-// and from the least accurate odometry, which no other loops or peaks lead astray, and from scales
-// on either side.
-template <class Pose>
-void settle_anew(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
-  if (!best_of(found).tells_of_scales()) return;
-  const std::vector<bool> accepted = best_of(found).accepted;
-  Climb<Pose> afresh = climb.on(climb.objective());
-  const auto grow = [&](const auto& start) { found.push_back(afresh.settled_on(accepted, start)); };
-  for (const auto& start : {kStarts[kStartsAlways - 1], kStarts[1]}) {
-    unless_it_breaks_down(grow, start);
-  }
-  found.push_back(settled_on_either_side(climb, best_of(found)));
-}
-
 // Whether the best does, and `to_the_last` leaves no loop in doubt.
 template <class Pose>
 bool explains_all(const Climb<Pose>& climb, const std::vector<Explanation<Pose>>& found,
@@ -145,7 +130,10 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
     if (to_the_last) unless_it_breaks_down(refine, best_of(found));
   } else if (calibrate && !astray()) {
     try_slips(climb, found);
-    if (at_once) settle_anew(climb, found);
+    if (at_once && best_of(found).tells_of_scales()) {
+      Climb<Pose> afresh = climb.on(climb.objective());
+      settle_on(afresh, best_of(found).accepted, found);
+    }
   }
   for (const StartScales& start : std::span(kStarts).subspan(kStartsAlways)) {
     if (!calibrate || !astray()) break;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "isotherm/base/error.hpp"
 #include "prune/consensus/climb/climb.hpp"
@@ -50,6 +51,20 @@ Explanation<Pose> settled_on_either_side(Climb<Pose>& climb, Explanation<Pose> f
     }
   } while (!about_the_same(found.scale, before));
   return found;
+}
+
+/// Adds to what was found what explains best that exactly these loops are true: by climbs from each
+/// start to which only these are offered, which no other loops or peaks lead astray, and from the
+/// best with scales on either side.
+template <class Pose>
+void settle_on(Climb<Pose>& climb, const std::vector<bool> accepted,
+               std::vector<Explanation<Pose>>& found) {
+  const bool calibrate = climb.options().calibrate;
+  climb_from_each_start(
+      calibrate, [&](const auto& start) { found.push_back(climb.settled_on(accepted, start)); });
+  if (calibrate && !found.empty()) {
+    found.push_back(settled_on_either_side(climb, best_of(found)));
+  }
 }
 
 }  // namespace isotherm::slam::detail
