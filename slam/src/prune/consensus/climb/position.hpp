@@ -84,9 +84,6 @@ class Position {
   std::size_t learnt_from() const noexcept { return learnt_from_; }
   void learn_no_more_from(std::size_t loops) { learnt_from_ = loops; }
 
-  /// Whether the scales that can be learnt from here explain the same loops better.
-  bool outdoes(double evidence);
-
   /// Until none gains, before loops are accepted that a slip too many leaves room for.
   bool find_slips();
 
@@ -114,6 +111,8 @@ class Position {
     std::vector<bool> dropped;
   };
 
+  // Whether the scales that can be learnt from here explain the same loops better.
+  bool outdoes(double evidence);
   void go_back(const Place& place);
 
   bool calibrate_;

@@ -86,6 +86,23 @@ bool explains_all(const Climb<Pose>& climb, const std::vector<Explanation<Pose>>
   return to_the_last ? climb.none_in_doubt(best) : best.accepts_all();
 }
 
+// Whether nothing was found that is likelier than that no loop is true.
+template <class Pose>
+bool is_astray(Climb<Pose>& climb, const std::vector<Explanation<Pose>>& found) {
+  if (found.empty()) return true;
+  const auto* none = climb.nothing(least_that_tells(found));
+  return none && std::ranges::all_of(
+                     found, [&](const auto& peak) { return peak.evidence <= none->evidence; });
+}
+
+// The loops of the best that was found, explained anew.
+template <class Pose>
+void settle_anew(const Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
+  if (!best_of(found).tells_of_scales()) return;
+  Climb<Pose> afresh = climb.on(climb.objective());
+  settle_on(afresh, best_of(found).accepted, found);
+}
+
 // The best that was found with slips of odometry that it hides, and what speaks for others.
 template <class Pose>
 void try_slips(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
@@ -112,13 +129,7 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   for (const auto& standpoint : standpoints(climb, sampled, depth.sample_soon)) {
     unless_it_breaks_down(try_from, standpoint);
   }
-  const auto nothing = [&] { return climb.nothing(least_that_tells(found)); };
-  const auto astray = [&] {
-    if (found.empty()) return true;
-    const auto* none = nothing();
-    return none && std::ranges::all_of(
-                       found, [&](const auto& peak) { return peak.evidence <= none->evidence; });
-  };
+  const auto astray = [&] { return is_astray(climb, found); };
   const auto try_start = [&](const StartScales& start) {
     const auto climb_from = [&](bool known) { try_from(start, known); };
     if (start.known) unless_it_breaks_down(climb_from, true);
@@ -130,16 +141,13 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
     if (to_the_last) unless_it_breaks_down(refine, best_of(found));
   } else if (calibrate && !astray()) {
     try_slips(climb, found);
-    if (at_once && best_of(found).tells_of_scales()) {
-      Climb<Pose> afresh = climb.on(climb.objective());
-      settle_on(afresh, best_of(found).accepted, found);
-    }
+    if (at_once) settle_anew(climb, found);
   }
   for (const StartScales& start : std::span(kStarts).subspan(kStartsAlways)) {
     if (!calibrate || !astray()) break;
     try_start(start);
   }
-  if (const auto* none = nothing()) found.push_back(*none);
+  if (const auto* none = climb.nothing(least_that_tells(found))) found.push_back(*none);
   keep_peaks(found);
   return found;
 }
