@@ -55,7 +55,8 @@ Explanation<Pose> settled_on_either_side(Climb<Pose>& climb, Explanation<Pose> f
 
 /// Adds to what was found what explains best that exactly these loops are true: by climbs from each
 /// start to which only these are offered, which no other loops or peaks lead astray, and from the
-/// best with scales on either side.
+/// best with scales on either side. `accepted` is a copy, since it may be of one in `found`, which
+/// grows.
 template <class Pose>
 void settle_on(Climb<Pose>& climb, const std::vector<bool> accepted,
                std::vector<Explanation<Pose>>& found) {
