@@ -45,7 +45,7 @@ class Localization {
       whole_ = judged_;
       leave_out_undetermined();
     } else {
-      use_ = between_placed();
+      use_ = detail::ranges_within(problem_, placement_, std::numeric_limits<double>::infinity());
       fit();
     }
     judge();
@@ -55,10 +55,6 @@ class Localization {
 
  private:
   detail::MapTask task() const { return {problem_, trusted_, gate_, options_}; }
-
-  std::vector<bool> between_placed() const {
-    return detail::ranges_within(problem_, placement_, std::numeric_limits<double>::infinity());
-  }
 
   // Beyond a millionth of chi-squared it is only single nodes that creep along the arcs of very
   // short ranges.

@@ -132,23 +132,21 @@ class Search {
 
   // The better one of both, with the parts that are better in the other.
   bool merge(Placement map) {
-    double reached = worth(task_, map);
     const double before = worth_;
-    if (reached > worth_) {
-      std::swap(map, best_);
-      worth_ = reached;
-    }
+    take_if_better(map);
     if (before > -std::numeric_limits<double>::infinity()) {
       auto both = best_;
-      if (in_frame_of_best(map) && recombine(task_, map, both)) {
-        reached = worth(task_, both);
-        if (reached > worth_) {
-          best_ = std::move(both);
-          worth_ = reached;
-        }
-      }
+      if (in_frame_of_best(map) && recombine(task_, map, both)) take_if_better(both);
     }
     return worth_ > before + kBetter;
+  }
+
+  // `map` is what was the best then.
+  void take_if_better(Placement& map) {
+    const double reached = worth(task_, map);
+    if (reached <= worth_) return;
+    std::swap(map, best_);
+    worth_ = reached;
   }
 
   // Without anchors every map has its own.
