@@ -23,7 +23,7 @@ class Peaks {
   /// and not worse. None where none did.
   const Explanation<Pose>* beyond(const Explanation<Pose>& now) const;
 
-  /// The present climb ends, at a peak of its own or at one of all().
+  /// The present climb ends, at a peak of its own or at one that beyond() told.
   void end_at(const Explanation<Pose>& own) { peaks_.push_back(own); }
   const Explanation<Pose>& end_at_known(const Explanation<Pose>& peak);
 

@@ -131,12 +131,12 @@ bool Position<Pose>::try_best_slips(double least) {
   auto changes = assessment.slip_changes(now);
   std::erase_if(changes, [least](const SlipChange& change) { return change.gain < least; });
   std::ranges::sort(changes, std::greater{}, &SlipChange::gain);
-  std::size_t count = 0;
-  while (count < changes.size() && changes[count].gain >= 0.5 * changes.front().gain) ++count;
-  const auto try_first = [&](std::size_t some) {
-    return try_with([&](auto&) { slip(std::span(changes).first(some)); });
-  };
-  return count > 0 && (try_first(count) || (count > 1 && try_first(1)));
+  std::size_t some = 0;
+  while (some < changes.size() && changes[some].gain >= 0.5 * changes.front().gain) ++some;
+  for (; some > 0; some /= 2) {
+    if (try_with([&](auto&) { slip(std::span(changes).first(some)); })) return true;
+  }
+  return false;
 }
 
 template <class Pose>

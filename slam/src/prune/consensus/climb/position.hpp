@@ -91,10 +91,9 @@ class Position {
   bool take_slips(double least);
 
   /// All edges that gain at least half of what the one does that gains most by erring more than
-  /// others, or no more, since each explains a part of what others would; or else that one.
+  /// others, or no more. Where each explains a part of what others would that is too many: the half
+  /// of them that gains most is tried, and so on.
   bool try_best_slips(double least);
-
-  void slip(std::span<const SlipChange> changes);
 
   Explanation<Pose> now;
   Explanation<Pose> best;  ///< on the way
@@ -114,6 +113,7 @@ class Position {
   // Whether the scales that can be learnt from here explain the same loops better.
   bool outdoes(double evidence);
   void go_back(const Place& place);
+  void slip(std::span<const SlipChange> changes);
 
   bool calibrate_;
   std::size_t learnt_from_ = 0;

@@ -1,7 +1,6 @@
 #include "prune/consensus/climb/slip_trials.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "prune/consensus/climb/groups.hpp"
@@ -54,7 +53,8 @@ bool SlipTrials<Pose>::for_run(const Selection& loops) {
     std::fill(at_.dropped.begin(), at_.dropped.end(), false);
     at_.take_as(loops, true);
     at_.assess();
-    const bool slips = at_.try_best_slips(0.0) || elsewhere(loops.front());
+    const bool slips = at_.try_best_slips(0.0);
+    if (!slips) find_slips_anew();
     Explanation<Pose> best = at_.now;
     while (slips && at_.now.evidence <= least && (at_.try_best_slips(0.0) || moves_.shift())) {
       if (at_.now.accepted[loops.front()] && at_.now.evidence > best.evidence) best = at_.now;
@@ -65,23 +65,12 @@ bool SlipTrials<Pose>::for_run(const Selection& loops) {
   });
 }
 
-// Whether another edge explains better what is next to a loop than the one that slips nearest to
-// one of its ends does.
+// Of what was found without these loops no one change may do where several together would.
 template <class Pose>
-bool SlipTrials<Pose>::elsewhere(Index loop) {
-  const double least = at_.now.evidence + kBetter;
-  const auto& graph = at_.assessment.graph();
-  const auto& link = graph.loops[loop];
-  for (const Index end : {graph.vertex[link.a], graph.vertex[link.b]}) {
-    const auto edge = nearest_slip(at_.now.shapes.slips, end);
-    const bool better = edge && at_.all_or_nothing([&] {
-      at_.slip(std::array{SlipChange{.vertex = *edge, .slip = 0}});
-      at_.assess();
-      return at_.try_best_slips(0.0) && at_.now.evidence > least;
-    });
-    if (better) return true;
-  }
-  return false;
+void SlipTrials<Pose>::find_slips_anew() {
+  if (!any_slips(at_.now.shapes.slips)) return;
+  at_.now.shapes.slips.clear();
+  moves_.settle();
 }
 
 template <class Pose>

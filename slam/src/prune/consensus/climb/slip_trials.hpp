@@ -39,7 +39,7 @@ class SlipTrials {
 
  private:
   bool for_run(const Selection& loops);
-  bool elsewhere(Index loop);
+  void find_slips_anew();
   std::vector<Selection> rejected_runs() const;
 
   Position<Pose>& at_;

@@ -1,7 +1,6 @@
 #include "prune/consensus/odometry/slips.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 
 namespace isotherm::slam::detail {
 namespace {
@@ -24,16 +23,6 @@ double count_of(const Slips& slips) {
 }
 
 }  // namespace
-
-std::optional<Index> nearest_slip(const Slips& slips, Index vertex) {
-  std::optional<Index> nearest;
-  const auto distance = [vertex](Index edge) { return std::abs(2 * (edge - vertex) + 1); };
-  for (Index edge = 0; edge < static_cast<Index>(slips.size()); ++edge) {
-    if (slip_of(slips, edge) == 0) continue;
-    if (!nearest || distance(edge) < distance(*nearest)) nearest = edge;
-  }
-  return nearest;
-}
 
 double log_prior_of(const Slips& slips) {
   const auto of_size = log_shares();

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,9 +27,6 @@ inline std::uint8_t slip_of(const Slips& slips, Index vertex) {
 inline bool any_slips(std::span<const std::uint8_t> slips) {
   return std::ranges::any_of(slips, [](std::uint8_t slip) { return slip > 0; });
 }
-
-/// The edge that slips nearest to a vertex along odometry, by its first vertex, if any does.
-std::optional<Index> nearest_slip(const Slips& slips, Index vertex);
 
 /// On its variances.
 inline double slip_factor(std::size_t slip) {

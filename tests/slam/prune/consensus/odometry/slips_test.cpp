@@ -45,16 +45,6 @@ TEST(Slips, HaveTheOddsOfOneMore) {
   EXPECT_TRUE(std::isfinite(log_slip_odds({}, 0)[1]));
 }
 
-TEST(Slips, AreNearAVertexFromEitherSide) {
-  const Slips slips = {0, 1, 0, 0, 0, 2, 0};
-  EXPECT_EQ(nearest_slip(slips, 0), 1);
-  EXPECT_EQ(nearest_slip(slips, 3), 1) << "the edge from 1 to 2 before that from 5 to 6";
-  EXPECT_EQ(nearest_slip(slips, 5), 5);
-  EXPECT_EQ(nearest_slip(slips, 6), 5);
-  EXPECT_EQ(nearest_slip({0, 0}, 1), std::nullopt);
-  EXPECT_EQ(nearest_slip({}, 1), std::nullopt);
-}
-
 template <class Pose>
 class SlippedEdgeOf : public testing::Test {
  protected:
