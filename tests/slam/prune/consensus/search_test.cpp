@@ -177,6 +177,22 @@ TYPED_TEST(SlippingOf, IsNotBelievedOfALoopThatAloneTellsIt) {
   EXPECT_EQ(search(climb).front().accepted, truly);
 }
 
+// Six edges of two dozen slip, and half of the loops are rejected. Run after run tells slips, until
+// no single change explains the last loop beside them: without new ones for all it stays rejected.
+TEST(Slipping, IsFoundAnewWithALoopThatTellsNoMore) {
+  Random random(57);
+  constexpr std::size_t kLoops = 35;
+  auto graph = random_loop_graph<Pose2>(random, 100, kLoops, 1.0).graph;
+  for (int k = 0; k < 6; ++k) {
+    isotherm_test::slip(graph.constraints[40 + 2 * random.index(12)], 4.0 + 8.0 * k);
+  }
+  const Objective<Pose2> objective(graph, edge_roles(graph), kWindow);
+  Climb<Pose2> climb(objective, kOptions, kSilent);
+  const auto before = climb.from({}, true);
+  ASSERT_LT(before.accepted_count(), kLoops - 1);
+  EXPECT_TRUE(climb.slipping(before).accepts_all());
+}
+
 TYPED_TEST(SlippingOf, GoesBackWhereNothingSlips) {
   using Pose = TypeParam;
   Random random(13);
