@@ -9,7 +9,7 @@
 #include "isotherm/base/statistics.hpp"
 #include "online/present_map.hpp"
 #include "prune/consensus/constants.hpp"
-#include "prune/consensus/objective/log_odds.hpp"
+#include "prune/consensus/log_odds.hpp"
 #include "prune/consensus/search/report.hpp"
 
 namespace isotherm::slam::detail {

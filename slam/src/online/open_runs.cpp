@@ -4,7 +4,7 @@
 #include <string>
 
 #include "isotherm/base/error.hpp"
-#include "prune/consensus/objective/log_sum.hpp"
+#include "prune/consensus/log_sum.hpp"
 
 namespace isotherm::slam::detail {
 namespace {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "prune/consensus/constants.hpp"
-#include "prune/consensus/objective/log_odds.hpp"
+#include "prune/consensus/log_odds.hpp"
 
 namespace isotherm::slam::detail {
 namespace {

@@ -1,4 +1,4 @@
-#include "prune/consensus/objective/log_odds.hpp"
+#include "prune/consensus/log_odds.hpp"
 
 #include <cmath>
 #include <limits>

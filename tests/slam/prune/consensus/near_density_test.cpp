@@ -48,6 +48,9 @@ TYPED_TEST(NearDensityOf, HoldsLoopsAgainstADensity) {
   for (std::size_t c = 0; c < kProposalClasses; ++c) {
     EXPECT_NEAR(scaled_mean[c], mean[c] - Pose::kDim * std::log(kUnits), 1e-6);
   }
+  const std::vector<Index> loops = {0, 7, 29};
+  EXPECT_NEAR(scaled.log_mean_around(in_other_units, loops, 20),
+              near.log_mean_around(reduced, loops, 20) - Pose::kDim * std::log(kUnits), 1e-6);
 }
 
 template <class Pose>
@@ -90,6 +93,23 @@ TYPED_TEST(NearDensityOf, FindsPairsNearerOnASmallerMap) {
   const auto far = near.log_mean({scattered});
   const std::size_t longest = proposal_class(reduced, 0);
   EXPECT_GT(as_is[longest], far[longest]);
+}
+
+// By what the loops measure: none is near around one that joins poses far from each other. Of no
+// loops as little is known as of a class without pairs.
+TYPED_TEST(NearDensityOf, KnowsHowManyAreNearAroundLoops) {
+  using Pose = TypeParam;
+  const auto reduced = graph_with_loops<Pose>(12);
+  const NearDensity<Pose> near(reduced);
+  const double nothing = near.log_mean({reduced.poses})[0];
+  auto far = reduced;
+  typename Pose::Tangent away = Pose::Tangent::Zero();
+  away[0] = 1e6;
+  far.loops[7].T_a_b = far.loops[7].T_a_b * Pose::exp(away);
+  const double none = near.log_mean_around(far, {7}, 20);
+  EXPECT_LT(none, nothing - 4.0);
+  EXPECT_GT(near.log_mean_around(reduced, {7}, 20), none + 1.0);
+  EXPECT_EQ(near.log_mean_around(reduced, {}, 20), nothing);
 }
 
 // A loop that measured z says little of a pair that the map has far from what loops measure, and as

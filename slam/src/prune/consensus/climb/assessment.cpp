@@ -8,7 +8,7 @@
 #include "isotherm/base/parallel.hpp"
 #include "isotherm/base/random.hpp"
 #include "prune/consensus/constants.hpp"
-#include "prune/consensus/objective/log_odds.hpp"
+#include "prune/consensus/log_odds.hpp"
 #include "prune/consensus/objective/run_density.hpp"
 
 namespace isotherm::slam::detail {
@@ -68,8 +68,9 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   found_.mixture = now.mixture();
   find_peak(now);
   find_nearness(now);
-  const double fit =
-      objective_.fit(now, *found_.graph, estimate_, found_.near) + bias_->log_evidence();
+  follow_runs(now);
+  const double fit = objective_.fit(now, *found_.graph, estimate_, found_.near) +
+                     bias_->log_evidence() + found_.false_runs.log_evidence;
   // The more redundancy there is, the narrower is the peak of the scales.
   now.redundancy = {};
   if (fit + objective_.log_scale_peak(now) < least) return false;
@@ -79,10 +80,22 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   if (pace_) pace_(kCovarianceWork * estimate_.work());
   now.evidence = fit + objective_.log_scale_peak(now);
   if (now.evidence < least) return false;
-  found_.run_density = run_density(objective_.runs(), graph(), objective_.stated().reduced,
-                                   now.scale, found_.mixture, now.accepted, threads_);
   weigh(now);
   return true;
+}
+
+// What each loop of a run is likely to measure by the one before, and what that says of false ones.
+template <class Pose>
+void Assessment<Pose>::follow_runs(const Explanation<Pose>& now) {
+  const auto& runs = objective_.runs();
+  found_.run_density = run_density(runs, graph(), objective_.stated().reduced, now.scale,
+                                   found_.mixture, now.accepted, threads_);
+  std::vector<double> log_led(now.accepted.size());
+  for (std::size_t k = 0; k < log_led.size(); ++k) {
+    log_led[k] = found_.run_density[k] -
+                 std::max(objective_.log_mean_around(), log_alternative(static_cast<Index>(k)));
+  }
+  found_.false_runs = false_runs(runs, now.accepted, log_led);
 }
 
 template <class Pose>
@@ -389,6 +402,19 @@ double Assessment<Pose>::log_prior_odds(const Explanation<Pose>& now,
     }
   }
   return odds;
+}
+
+template <class Pose>
+double Assessment<Pose>::log_false_run(std::span<const Index> loops) const {
+  const auto& follows = found_.false_runs.log_follows;
+  double sum = 0.0;
+  for (const Index k : loops) {
+    sum += follows[k];
+    for (const Index next : objective_.runs().followers(k)) {
+      if (!std::ranges::binary_search(loops, next)) sum += follows[next];
+    }
+  }
+  return sum;
 }
 
 template class Assessment<Pose2>;

@@ -9,6 +9,7 @@
 #include "prune/consensus/objective/loop_gain.hpp"
 #include "prune/consensus/objective/objective.hpp"
 #include "prune/consensus/objective/standing.hpp"
+#include "prune/consensus/runs/false_runs.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -69,6 +70,7 @@ class Assessment {
     std::vector<Matrix> held;
     std::shared_ptr<const std::vector<Belief<Pose>>> steps;  // of odometry's residuals, if any
     std::vector<double> run_density;                         // run_density()
+    FalseRuns false_runs;
   };
   const Findings& findings() const noexcept { return found_; }
 
@@ -107,6 +109,10 @@ class Assessment {
   /// all true than that all are false, if the others are as in `now`.
   double log_prior_odds(const Explanation<Pose>& now, std::span<const Index> loops) const;
 
+  /// log of how much likelier it is than by chance that these loops, ascending, are false with
+  /// those around them in their runs that are.
+  double log_false_run(std::span<const Index> loops) const;
+
   /// log of the density that a loop's is held against.
   double log_alternative(Index loop) const {
     return objective_.log_alternative(loop, found_.near, found_.mixture.scale);
@@ -137,6 +143,7 @@ class Assessment {
   Matrix odometry_says(Index loop, double scale) const;
   void believe(Index loop, const Matrix& covariance);
   void solve(Explanation<Pose>& now, const std::vector<Index>& loops, bool odometry);
+  void follow_runs(const Explanation<Pose>& now);
   void weigh(Explanation<Pose>& now);
   void find_redundancy(Explanation<Pose>& now) const;
   Standing accepted_standing(const Explanation<Pose>& now, Index loop) const;

@@ -9,7 +9,7 @@
 #include "isotherm/base/error.hpp"
 #include "prune/consensus/climb/learn.hpp"
 #include "prune/consensus/climb/slip_trials.hpp"
-#include "prune/consensus/objective/log_odds.hpp"
+#include "prune/consensus/log_odds.hpp"
 #include "prune/consensus/objective/scale_prior.hpp"
 
 namespace isotherm::slam::detail {

@@ -9,7 +9,7 @@
 #include "prune/consensus/climb/groups.hpp"
 #include "prune/consensus/climb/position.hpp"
 #include "prune/consensus/climb/standpoint.hpp"
-#include "prune/consensus/objective/log_odds.hpp"
+#include "prune/consensus/log_odds.hpp"
 
 namespace isotherm::slam::detail {
 

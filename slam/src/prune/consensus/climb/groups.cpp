@@ -6,7 +6,7 @@
 
 #include "graph/find_root.hpp"
 #include "prune/consensus/constants.hpp"
-#include "prune/consensus/objective/log_odds.hpp"
+#include "prune/consensus/log_odds.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -61,7 +61,7 @@ std::vector<Group> groups_of(const Assessment<Pose>& assessment, const Explanati
   for (auto& loops : runs_of(assessment, now, among)) {
     const Index seed =
         *std::ranges::max_element(loops, {}, [&](Index k) { return standings[k].evidence; });
-    double gain = assessment.log_prior_odds(now, loops);
+    double gain = assessment.log_prior_odds(now, loops) - assessment.log_false_run(loops);
     for (const Index k : loops) {
       const bool led = k != seed && std::ranges::binary_search(loops, runs.before(k));
       const double own = standings[k].evidence;

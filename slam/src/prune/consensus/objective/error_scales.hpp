@@ -12,7 +12,7 @@ inline constexpr std::size_t kScaleCount = 4;
 inline constexpr std::size_t kAsStated = 3;
 using ByScale = std::array<double, kScaleCount>;
 
-inline constexpr double kNever = -1e9;  ///< log of no probability
+inline constexpr double kNever = -1e100;  ///< log of no probability
 
 /// Factors on the information of a loop that make it the mean inverse of its covariance.
 struct LoopWeight {

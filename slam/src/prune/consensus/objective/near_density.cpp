@@ -10,13 +10,14 @@
 #include "isotherm/base/statistics.hpp"
 #include "prune/consensus/constants.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
-#include "prune/consensus/pairs/loop_pair.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
 
 constexpr std::size_t kMostPlaces = 20000;
 constexpr std::size_t kMostWeighed = 50000;
+constexpr std::size_t kMostAround = 500;    // loops
+constexpr Index kMostStrides = 10;          // to either side of them
 constexpr double kDeviationOfMad = 1.4826;  // of a normal distribution
 constexpr std::uint64_t kSeed = 1;
 
@@ -39,6 +40,20 @@ typename Pose::Tangent half_step_variance(const OdometryChain<Pose>& odometry) {
   mean.template head<Pose::kDim>().setConstant(translation / count);
   mean.template tail<Pose::kDof - Pose::kDim>().setConstant(rotation / count);
   return mean.cwiseAbs2() / 12.0;
+}
+
+// Those of up to so many vertices before and after, from it, by odometry.
+template <class Pose>
+std::vector<Pose> poses_around(const OdometryChain<Pose>& odometry, Index vertex, Index window) {
+  std::vector<Pose> poses;
+  const Index stride = std::max<Index>(1, window / kMostStrides);
+  const Index last = std::min(vertex + window, odometry.vertex_count() - 1);
+  for (Index v = std::max<Index>(vertex - window, 0); v <= last; v += stride) {
+    if (odometry.chain(v) == odometry.chain(vertex)) {
+      poses.push_back(odometry.relative(vertex, v).T);
+    }
+  }
+  return poses;
 }
 
 }  // namespace
@@ -193,6 +208,27 @@ std::array<double, kProposalClasses> NearDensity<Pose>::log_mean(
     result[c] = log_peak_ + std::log(count.near[c] / count.pairs[c]);
   }
   return result;
+}
+
+// As if half a pair more were near, as above.
+template <class Pose>
+double NearDensity<Pose>::log_mean_around(const ReducedGraph<Pose>& graph,
+                                          const std::vector<Index>& loops, Index window) const {
+  double near = 0.5 * std::exp2(-0.5 * Pose::kDof);
+  double pairs = 1.0;
+  const std::size_t every = std::max<std::size_t>(1, loops.size() / kMostAround);
+  for (std::size_t k = 0; k < loops.size(); k += every) {
+    const auto loop = forward_loop(graph, graph.loops[loops[k]], {});
+    const auto others = poses_around(graph.odometry, loop.to, window);
+    for (const Pose& one : poses_around(graph.odometry, loop.from, window)) {
+      const Pose measured = one.inverse() * loop.measured.T;
+      for (const Pose& other : others) {
+        near += std::exp(-0.5 * offset(measured * other).cwiseQuotient(deviation_).squaredNorm());
+        pairs += 1.0;
+      }
+    }
+  }
+  return log_peak_ + std::log(near / pairs);
 }
 
 template <class Pose>

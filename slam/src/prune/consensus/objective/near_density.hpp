@@ -5,6 +5,7 @@
 
 #include "prune/consensus/estimate/reduced_graph.hpp"
 #include "prune/consensus/objective/span_class.hpp"
+#include "prune/consensus/pairs/loop_pair.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -40,6 +41,11 @@ class NearDensity {
   /// log f_mean of each proposal class, over maps that are as likely: the graph's nodes are at
   /// their poses.
   std::array<double, kProposalClasses> log_mean(const std::vector<std::vector<Pose>>& maps) const;
+
+  /// log of the mean of f over pairs with both ends within `window` vertices of one of these loops,
+  /// by what it measures and odometry alone: on no map.
+  double log_mean_around(const ReducedGraph<Pose>& graph, const std::vector<Index>& loops,
+                         Index window) const;
 
   /// log f(h) - log f(z) of a loop that measured z and is left the residual log(z^-1 h) by the map
   /// with it; `forward`: from the earlier vertex to the later one.

@@ -77,15 +77,16 @@ const Explanation<Pose>& best_of(const std::vector<Explanation<Pose>>& found) {
 /// The log evidence of an explanation: of the accepted set A and the scales,
 ///
 ///     log p(z_A, odometry | scales) - sum over A of (log f_mean + log f(z) - log f(h))
-///         + log pi(A) + log pi(scales)
+///         + log r(the others) + log pi(A) + log pi(scales)
 ///
 /// with p by Laplace's approximation from the factor that the estimate holds, without what does not
 /// depend on A and the scales (of odometry without cycles that is all of its own: p is that of z_A
-/// given odometry), f_mean, f(z) and f(h) as in NearDensity, pi(A) as in LabelCounts. The scales
-/// are log-normal around what the file states (scale_prior.hpp) and integrated over by Laplace's
-/// approximation. Which loops are as accurate as most and which less (ScaleShares) is integrated
-/// out by variational Bayes (Bishop, Pattern Recognition and Machine Learning, 10.1), which gives a
-/// lower bound. A part that A joins to another lies anywhere on the map.
+/// given odometry), f_mean, f(z) and f(h) as in NearDensity, r as in FalseRuns, pi(A) as in
+/// LabelCounts. The scales are log-normal around what the file states (scale_prior.hpp) and
+/// integrated over by Laplace's approximation. Which loops are as accurate as most and which less
+/// (ScaleShares) is integrated out by variational Bayes (Bishop, Pattern Recognition and Machine
+/// Learning, 10.1), which gives a lower bound. A part that A joins to another lies anywhere on the
+/// map.
 ///
 /// The same number is what accepting the loops one by one adds (loop_gain), in any order.
 template <class Pose>
@@ -140,6 +141,9 @@ class Objective {
   /// nothing, since what it measures was drawn with another.
   double log_nearer(Index loop, const typename Pose::Tangent& r) const;
 
+  /// See NearDensity::log_mean_around(): around loops that lead others.
+  double log_mean_around() const noexcept { return log_mean_around_; }
+
   const NearDensity<Pose>& near_density() const noexcept { return near_; }
 
   /// Of the logs of the factors on covariances that measurements of this redundancy tell.
@@ -174,8 +178,8 @@ class Objective {
   /// log of the volume of relative poses that the map of odometry allows.
   double log_volume() const noexcept { return log_volume_; }
 
-  /// The evidence, but for what log_scale_peak() and BiasFit::log_evidence() say. `estimate` must
-  /// have settled on the explanation's loops, scales and weights, on `graph`.
+  /// The evidence, but for what log_scale_peak(), BiasFit::log_evidence() and FalseRuns say.
+  /// `estimate` must have settled on the explanation's loops, scales and weights, on `graph`.
   double fit(const Explanation<Pose>& explanation, const ScaledGraph<Pose>& graph,
              const Estimate<Pose>& estimate, const NearByClass& near) const;
 
@@ -200,6 +204,7 @@ class Objective {
   ScaledGraph<Pose> stated_;
   NearDensity<Pose> near_;
   Runs<Pose> runs_;
+  double log_mean_around_;
   Index window_;
   bool calibrate_;
   typename Pose::Tangent most_odometry_;

@@ -34,6 +34,16 @@ Runs<Pose>::Runs(const ReducedGraph<Pose>& graph, Index window)
   }
 }
 
+template <class Pose>
+std::vector<Index> Runs<Pose>::leaders() const {
+  std::vector<Index> leaders;
+  for (std::size_t k = 0; k < before_.size(); ++k) {
+    const Index led_by = leader(static_cast<Index>(k));
+    if (led_by != kNone) leaders.push_back(led_by);
+  }
+  return leaders;
+}
+
 template class Runs<Pose2>;
 template class Runs<Pose3>;
 

@@ -23,6 +23,9 @@ class Runs {
   /// The one before it that tells whether it is true; none of a copy, which is no draw of its own.
   Index leader(Index loop) const { return copied_[loop] ? kNone : before_[loop]; }
 
+  /// Of all that have one.
+  std::vector<Index> leaders() const;
+
   /// What one is that none leads.
   LabelCounts::Alone alone(Index loop) const {
     return copied_[loop] ? LabelCounts::kCopy : LabelCounts::kFirst;

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "prune/consensus/constants.hpp"
-#include "prune/consensus/objective/log_odds.hpp"
-#include "prune/consensus/objective/log_sum.hpp"
+#include "prune/consensus/log_odds.hpp"
+#include "prune/consensus/log_sum.hpp"
 
 namespace isotherm::slam::detail {
 namespace {

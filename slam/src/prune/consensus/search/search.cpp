@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "prune/consensus/objective/log_odds.hpp"
+#include "prune/consensus/log_odds.hpp"
 #include "prune/consensus/search/report.hpp"
 #include "prune/consensus/search/sample.hpp"
 #include "prune/consensus/search/starts.hpp"
