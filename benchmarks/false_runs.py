@@ -104,9 +104,10 @@ def page(rows):
         lines.append(f"| {loops} | {tells} | {method} | {total('true')} | {total('true prune')} "
                      f"| {total('true ambiguous')} | {total('false')} | {total('false keep')} "
                      f"| {total('false ambiguous')} |")
-    lines += ["", "Consensus knows that false loops may follow false ones: that they agree proves "
-              "nothing. GNC holds to the", "file's scales, which are right here; where they are not "
-              "see [Do no harm](harm.md)."]
+    lines += ["", "Consensus knows that false loops may follow false ones: that they agree proves nothing. "
+              "What it keeps", "are runs whose first loop fits by chance, at scales that it learns. GNC "
+              "holds to the file's scales, which", "are right here; where they are not see "
+              "[Do no harm](harm.md)."]
     return "\n".join(lines) + "\n"
 
 

@@ -140,31 +140,5 @@ TYPED_TEST(NearDensityOf, FallsWithTheDistanceOfThePair) {
               near.log_nearer(measured, left, true), 1e-9);
 }
 
-// Whichever way a pair is told; the mean over poses that are not known is that of draws.
-TYPED_TEST(NearDensityOf, IsLessWhereThePairIsNotKnown) {
-  using Pose = TypeParam;
-  const auto graph = graph_with_loops<Pose>(3);
-  const NearDensity<Pose> near(graph);
-  Random random(8);
-  const Pose& h = graph.loops.front().T_a_b;
-  const typename Pose::Matrix none = Pose::Matrix::Zero();
-  EXPECT_NEAR(near.log_mean_over(h, none, true), near.log_density(h, true), 1e-9);
-  for (const double deviation : {0.02, 0.05}) {
-    const typename Pose::Matrix root = deviation * Pose::Matrix::Random();
-    const typename Pose::Matrix covariance = root * root.transpose();
-    for (const bool forward : {true, false}) {
-      double sum = 0.0;
-      constexpr int kDraws = 20000;
-      for (int draw = 0; draw < kDraws; ++draw) {
-        const typename Pose::Tangent d = root * random.normal_vector<typename Pose::Tangent>();
-        sum += std::exp(near.log_density(h * Pose::exp(d), forward));
-      }
-      EXPECT_NEAR(near.log_mean_over(h, covariance, forward), std::log(sum / kDraws), 0.05)
-          << deviation << ' ' << forward;
-    }
-    EXPECT_NEAR(near.log_density(h, true), near.log_density(h.inverse(), false), 1e-9);
-  }
-}
-
 }  // namespace
 }  // namespace isotherm::slam::detail

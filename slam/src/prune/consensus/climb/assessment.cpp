@@ -70,7 +70,7 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   find_nearness(now);
   follow_runs(now);
   const double fit = objective_.fit(now, *found_.graph, estimate_, found_.near) +
-                     bias_->log_evidence() + found_.false_loops.log_evidence;
+                     bias_->log_evidence() + found_.false_runs.log_evidence;
   // The more redundancy there is, the narrower is the peak of the scales.
   now.redundancy = {};
   if (fit + objective_.log_scale_peak(now) < least) return false;
@@ -84,7 +84,7 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   return true;
 }
 
-// What each loop of a run is likely to measure by the one before, and how false ones came to be.
+// What each loop of a run is likely to measure by the one before, and what that says of false ones.
 template <class Pose>
 void Assessment<Pose>::follow_runs(const Explanation<Pose>& now) {
   const auto& runs = objective_.runs();
@@ -95,7 +95,7 @@ void Assessment<Pose>::follow_runs(const Explanation<Pose>& now) {
     log_led[k] = found_.run_density[k] -
                  std::max(objective_.log_mean_around(), log_alternative(static_cast<Index>(k)));
   }
-  found_.false_loops = false_loops(runs, now.accepted, log_led, found_.log_place);
+  found_.false_runs = false_runs(runs, now.accepted, log_led);
 }
 
 template <class Pose>
@@ -104,24 +104,11 @@ void Assessment<Pose>::find_nearness(const Explanation<Pose>& now) {
   const std::size_t accepted = now.accepted_count();
   const auto before = found_.near_of;
   const bool same = before && !is_much_more(accepted, *before) && !is_much_more(*before, accepted);
-  if (nearness_held_ && same) return find_places({estimate_.poses()});
-  const auto maps = drawn_maps(now.scale);
-  found_.near = objective_.near(maps);
+  if (nearness_held_ && same) return;
+  found_.near = objective_.near(drawn_maps(now.scale));
   found_.near_of = accepted;
-  find_places(maps);
   nearness_found_.times += 1.0;
   if (pace_) pace_(NearnessFound::kWork);
-}
-
-// Of the same maps as what is near by chance. Parts that nothing joins lie anywhere.
-template <class Pose>
-void Assessment<Pose>::find_places(const std::vector<std::vector<Pose>>& maps) {
-  found_.log_place.resize(graph().loops.size());
-  parallel_for_each(found_.log_place.size(), threads_, [&](std::size_t k) {
-    const auto [first, second] = estimate_.parts(graph().loops[k]);
-    found_.log_place[k] =
-        first == second ? objective_.log_place(static_cast<Index>(k), maps, found_.near) : 0.0;
-  });
 }
 
 template <class Pose>
@@ -355,8 +342,7 @@ Standing Assessment<Pose>::accepted_standing(const Explanation<Pose>& now, Index
   const double density = std::max(gain.log_density, -objective_.log_volume() - 0.5 * gain.chi2);
   const double nearer = objective_.log_nearer(loop, all.r);
   return {.chi2 = gain.chi2,
-          .evidence = density + nearer - log_alternative(loop) -
-                      log_false(log_place_without(loop, all, others)),
+          .evidence = density + nearer - log_alternative(loop),
           .weight = gain.weight};
 }
 
@@ -373,16 +359,8 @@ Standing Assessment<Pose>::other_standing(const Explanation<Pose>& now, Index lo
     standing.chi2 = gain.chi2;
     density = gain.log_density + objective_.log_nearer(loop, residual_with(others, Omega));
   }
-  standing.evidence = density - log_alternative(loop) - log_false(found_.log_place[loop]);
+  standing.evidence = density - log_alternative(loop);
   return standing;
-}
-
-// Of an accepted loop, which holds the maps that its ends were looked up on.
-template <class Pose>
-double Assessment<Pose>::log_place_without(Index loop, const Belief<Pose>& with,
-                                           const Belief<Pose>& others) const {
-  return found_.log_place[loop] + objective_.log_proposed(loop, others) -
-         objective_.log_proposed(loop, with);
 }
 
 // By how labels follow each other, as expected.
@@ -428,7 +406,7 @@ double Assessment<Pose>::log_prior_odds(const Explanation<Pose>& now,
 
 template <class Pose>
 double Assessment<Pose>::log_false_run(std::span<const Index> loops) const {
-  const auto& follows = found_.false_loops.log_follows;
+  const auto& follows = found_.false_runs.log_follows;
   double sum = 0.0;
   for (const Index k : loops) {
     sum += follows[k];

@@ -9,7 +9,7 @@
 #include "prune/consensus/objective/loop_gain.hpp"
 #include "prune/consensus/objective/objective.hpp"
 #include "prune/consensus/objective/standing.hpp"
-#include "prune/consensus/runs/false_loops.hpp"
+#include "prune/consensus/runs/false_runs.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -69,9 +69,8 @@ class Assessment {
     // Information of the loops that the covariances are given; none where empty.
     std::vector<Matrix> held;
     std::shared_ptr<const std::vector<Belief<Pose>>> steps;  // of odometry's residuals, if any
-    std::vector<double> log_place;                           // Objective::log_place()
     std::vector<double> run_density;                         // run_density()
-    FalseLoops false_loops;
+    FalseRuns false_runs;
   };
   const Findings& findings() const noexcept { return found_; }
 
@@ -120,9 +119,7 @@ class Assessment {
   }
 
   /// log of how much likelier true than false a loop is if the one before it in its run is true.
-  double log_led(Index loop) const {
-    return found_.run_density[loop] - log_alternative(loop) - log_false(found_.log_place[loop]);
-  }
+  double log_led(Index loop) const { return found_.run_density[loop] - log_alternative(loop); }
 
  private:
   void rescale(const Shapes<Pose>& shapes);
@@ -131,7 +128,6 @@ class Assessment {
   void turn_by(const TurnBias<Pose>& bias, Explanation<Pose>& now);
   std::vector<std::vector<Pose>> drawn_maps(const CovarianceScale& scale) const;
   void find_nearness(const Explanation<Pose>& now);
-  void find_places(const std::vector<std::vector<Pose>>& maps);
   bool reweigh(Explanation<Pose>& now, bool anyway);
   Matrix information(const Explanation<Pose>& now, Index loop) const {
     return objective_.information(now, *found_.graph, loop);
@@ -152,8 +148,6 @@ class Assessment {
   void find_redundancy(Explanation<Pose>& now) const;
   Standing accepted_standing(const Explanation<Pose>& now, Index loop) const;
   Standing other_standing(const Explanation<Pose>& now, Index loop) const;
-  double log_false(double log_place) const { return found_.false_loops.log_alone(log_place); }
-  double log_place_without(Index loop, const Belief<Pose>& with, const Belief<Pose>& others) const;
   void add_prior(Explanation<Pose>& now) const;
 
   const Objective<Pose>& objective_;

@@ -159,29 +159,11 @@ double NearDensity<Pose>::log_nearer(const Pose& z, const Tangent& residual, boo
   return forward ? log_at(h) - log_at(z) : log_at(h.inverse()) - log_at(z.inverse());
 }
 
-template <class Pose>
-double NearDensity<Pose>::log_density(const Pose& h, bool forward) const {
-  return log_peak_ - 0.5 * squared_offset(forward ? h : h.inverse());
-}
-
-// To first order. The inverse of h exp(d) is that of h times exp(-Ad d).
-template <class Pose>
-double NearDensity<Pose>::log_mean_over(const Pose& h, const typename Pose::Matrix& covariance,
-                                        bool forward) const {
-  using Matrix = typename Pose::Matrix;
-  const Pose T = forward ? h : h.inverse();
-  Matrix turn = Matrix::Identity();
-  turn.template topLeftCorner<Pose::kDim, Pose::kDim>() = T.rotation_matrix();
-  const Matrix by_d = forward ? turn : Matrix(turn * h.adjoint());
-  Matrix S = by_d * covariance * by_d.transpose();
-  S.diagonal() += deviation_.cwiseAbs2();
-  return log_normal<Pose>(offset(T), S);
-}
-
 // But for a constant.
 template <class Pose>
 double NearDensity<Pose>::log_at(const Pose& T) const {
-  return -0.5 * (kTailDof + Pose::kDof) * std::log1p(squared_offset(T) / kTailDof);
+  const double square = offset(T).cwiseQuotient(deviation_).squaredNorm();
+  return -0.5 * (kTailDof + Pose::kDof) * std::log1p(square / kTailDof);
 }
 
 // Poses near each other are rare on a large map: they are looked for, not drawn, from every
@@ -204,7 +186,8 @@ void NearDensity<Pose>::count_near(const Places& on, std::size_t first, std::siz
     for (const auto& [found, square] : near) {
       const auto b = static_cast<std::size_t>(found);
       if (b <= a) continue;
-      count.near[class_of(a, b)] += std::exp(-0.5 * squared_offset(T_a_world * on.poses[b]));
+      const Tangent off = offset(T_a_world * on.poses[b]).cwiseQuotient(deviation_);
+      count.near[class_of(a, b)] += std::exp(-0.5 * off.squaredNorm());
     }
   }
 }
@@ -240,7 +223,7 @@ double NearDensity<Pose>::log_mean_around(const ReducedGraph<Pose>& graph,
     for (const Pose& one : poses_around(graph.odometry, loop.from, window)) {
       const Pose measured = one.inverse() * loop.measured.T;
       for (const Pose& other : others) {
-        near += std::exp(-0.5 * squared_offset(measured * other));
+        near += std::exp(-0.5 * offset(measured * other).cwiseQuotient(deviation_).squaredNorm());
         pairs += 1.0;
       }
     }

@@ -51,10 +51,6 @@ class NearDensity {
   /// with it; `forward`: from the earlier vertex to the later one.
   double log_nearer(const Pose& z, const typename Pose::Tangent& residual, bool forward) const;
 
-  /// log f(h), and log of its mean over h exp(d) of this covariance.
-  double log_density(const Pose& h, bool forward) const;
-  double log_mean_over(const Pose& h, const typename Pose::Matrix& covariance, bool forward) const;
-
  private:
   using Tangent = typename Pose::Tangent;
 
@@ -77,9 +73,6 @@ class NearDensity {
   void fit(const ReducedGraph<Pose>& graph);
   void find_places(const ReducedGraph<Pose>& graph);
   Tangent offset(const Pose& T) const;
-  double squared_offset(const Pose& T) const {
-    return offset(T).cwiseQuotient(deviation_).squaredNorm();
-  }
   double log_at(const Pose& T) const;
   std::size_t class_of(std::size_t from, std::size_t to) const;
   void count_pairs(std::size_t anchor, std::array<double, kProposalClasses>& pairs) const;

@@ -7,7 +7,6 @@
 #include "matrices/decompositions.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
 #include "prune/consensus/estimate/map_volume.hpp"
-#include "prune/consensus/log_sum.hpp"
 #include "prune/consensus/objective/own_frames.hpp"
 #include "prune/consensus/odometry/step_spread.hpp"
 
@@ -84,28 +83,6 @@ double Objective<Pose>::log_nearer(Index loop, const typename Pose::Tangent& r) 
   if (runs_.copied(loop)) return 0.0;
   const auto& link = stated_.reduced.loops[loop];
   return near_.log_nearer(link.T_a_b, r, stated_.reduced.is_forward(link));
-}
-
-template <class Pose>
-double Objective<Pose>::log_place(Index loop, const std::vector<std::vector<Pose>>& maps,
-                                  const NearByClass& near) const {
-  if (runs_.copied(loop)) return 0.0;
-  const auto& graph = stated_.reduced;
-  const auto& link = graph.loops[loop];
-  double log_near = kNever;
-  for (const auto& map : maps) {
-    const Pose h = map[link.a].between(map[link.b]);
-    log_near = log_sum(log_near, near_.log_density(h, graph.is_forward(link)));
-  }
-  return log_near - std::log(static_cast<double>(maps.size())) - near[proposal_class(graph, loop)];
-}
-
-template <class Pose>
-double Objective<Pose>::log_proposed(Index loop, const Belief<Pose>& belief) const {
-  if (runs_.copied(loop)) return 0.0;
-  const auto& link = stated_.reduced.loops[loop];
-  return near_.log_mean_over(link.T_a_b * Pose::exp(belief.r), belief.P,
-                             stated_.reduced.is_forward(link));
 }
 
 // Log densities of the accepted loops at the peak, and of their scales; how near they are.

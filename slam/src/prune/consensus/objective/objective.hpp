@@ -81,7 +81,7 @@ const Explanation<Pose>& best_of(const std::vector<Explanation<Pose>>& found) {
 ///
 /// with p by Laplace's approximation from the factor that the estimate holds, without what does not
 /// depend on A and the scales (of odometry without cycles that is all of its own: p is that of z_A
-/// given odometry), f_mean, f(z) and f(h) as in NearDensity, r as in FalseLoops, pi(A) as in
+/// given odometry), f_mean, f(z) and f(h) as in NearDensity, r as in FalseRuns, pi(A) as in
 /// LabelCounts. The scales are log-normal around what the file states (scale_prior.hpp) and
 /// integrated over by Laplace's approximation. Which loops are as accurate as most and which less
 /// (ScaleShares) is integrated out by variational Bayes (Bishop, Pattern Recognition and Machine
@@ -141,14 +141,6 @@ class Objective {
   /// nothing, since what it measures was drawn with another.
   double log_nearer(Index loop, const typename Pose::Tangent& r) const;
 
-  /// log of how much likelier than by chance a detector proposes a loop's ends where they lie as on
-  /// these maps, `near` by chance; of a copy 0, since they were proposed with another's.
-  double log_place(Index loop, const std::vector<std::vector<Pose>>& maps,
-                   const NearByClass& near) const;
-
-  /// log of how much likelier it is for what is believed of them, in the mean.
-  double log_proposed(Index loop, const Belief<Pose>& belief) const;
-
   /// See NearDensity::log_mean_around(): around loops that lead others.
   double log_mean_around() const noexcept { return log_mean_around_; }
 
@@ -186,7 +178,7 @@ class Objective {
   /// log of the volume of relative poses that the map of odometry allows.
   double log_volume() const noexcept { return log_volume_; }
 
-  /// The evidence, but for what log_scale_peak(), BiasFit::log_evidence() and FalseLoops say.
+  /// The evidence, but for what log_scale_peak(), BiasFit::log_evidence() and FalseRuns say.
   /// `estimate` must have settled on the explanation's loops, scales and weights, on `graph`.
   double fit(const Explanation<Pose>& explanation, const ScaledGraph<Pose>& graph,
              const Estimate<Pose>& estimate, const NearByClass& near) const;
