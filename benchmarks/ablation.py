@@ -34,7 +34,8 @@ CONSTANTS = [
              "deviation of the mean error of odometry's turns, in those of a step", (0.03, 0.3)),
     Constant("kScaleStep", "3", "of variances, from one kind of loop to the next", (2, 10)),
     Constant("kLoopsBefore", "1", "loops of either kind that count as seen before any is", (0.5, 4)),
-    Constant("kFalseAlone", "1000", "false loops that follow none, as seen before any", (20, 1e5)),
+    Constant("kFalseFollowing", "0.05", "share of false loops after a false one that follow it",
+             (0.005, 0.3)),
     Constant("kTailDof", "4", "degrees of freedom of Student's t of what loops measure", (2, 8)),
     Constant("kReach", "3.5", "deviations to which a kernel of near pairs reaches", (2, 7)),
     Constant("kFewLoops", "5", "loops of which none is pruned if there are fewer", (0, 20)),
@@ -62,6 +63,9 @@ MOVES = {
          "if ({off}) {{ start(none); return climb(); }}"),
     "far starts": ("search/search.cpp", ": std::span(kStarts).subspan(kStartsAlways)) {\n",
                    "if ({off}) break;"),
+    "the map laid out anew": (CLIMB, "::lay_out_anew() {\n", "if ({off}) return false;"),
+    "all loops true": (CLIMB, "::all_true(const Explanation<Pose>& found) {\n",
+                       "if ({off}) return found;"),
     "loops weighed by the others": (CLIMB, "::weigh_by_others() {\n", "if ({off}) return false;"),
     "the look afar": (CLIMB, "::weigh_afar() {\n", "if ({off}) return false;"),
     "the bias of odometry":
@@ -179,7 +183,7 @@ def page(base, rows, cell_count):
              line_of("as they are", "", "", "", base, base, True)]
     for constant in CONSTANTS:
         model = constant.name in ("kScaleDeviation", "kScaleStep", "kLoopsBefore", "kTailDof",
-                                  "kReach", "kBiasDeviation", "kFalseAlone")
+                                  "kReach", "kBiasDeviation", "kFalseFollowing")
         lines += [line_of(f"`{constant.name}`", constant.meaning, constant.value, f"{value:g}",
                           rows[f"{constant.name}={value:g}"], base, not model)
                   for value in constant.tried if f"{constant.name}={value:g}" in rows]

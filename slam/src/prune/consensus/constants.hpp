@@ -30,10 +30,10 @@ inline constexpr double kScaleStep = 3.0;
 /// share of either nothing is known (a uniform distribution).
 inline constexpr double kLoopsBefore = 1.0;
 
-/// False loops that follow no false one, counted as seen before any is: of real detectors' false
-/// loops after false ones a quarter to three quarters follow (Bicocca, Bovisa), and of a clean
-/// file's weak loops none must be taken for that, however well it would explain them.
-inline constexpr double kFalseAlone = 1000.0;
+/// Share of the false loops after a false one that follow it: of real detectors' a quarter to three
+/// quarters do (Bicocca, Bovisa). Less, so that each must be twenty times likelier as one of a
+/// false run than as a true one: true loops of a clean file agree with each other as well.
+inline constexpr double kFalseFollowing = 0.05;
 
 /// Degrees of freedom of Student's t of what loops measure: heavy tails, of finite variance (Lange,
 /// Little and Taylor, Robust Statistical Modeling Using the t Distribution, 1989, section 5).

@@ -179,6 +179,32 @@ TYPED_TEST(EstimateOf, LoopsMovePartsTogether) {
   for (const auto& loop : reduced.loops) EXPECT_LT(estimate.residual(loop).norm(), 1e-9);
 }
 
+// Poses turned at random, of two chains that no loop joins.
+TYPED_TEST(EstimateOf, IsLaidOutAnewWhereverPosesAre) {
+  using Pose = TypeParam;
+  Random random(17);
+  auto made = random_loop_graph<Pose>(random, 40, 12, 1.0, 1e4);
+  std::erase_if(made.graph.constraints,
+                [](const auto& edge) { return (edge.from < 20) != (edge.to < 20); });
+  const auto reduced = reduce(made.graph, edge_roles(made.graph));
+  const std::vector<bool> accepted(reduced.loops.size(), true);
+  const CovarianceScale scale{2.0, 0.5};
+  Estimate<Pose> estimate(reduced);
+  estimate.update(accepted, scale, 20);
+  Estimate<Pose> turned(reduced);
+  auto layout = estimate.layout();
+  for (Pose& pose : layout.poses)
+    pose = pose * Pose::exp(random.normal_vector<typename Pose::Tangent>());
+  turned.restore(layout);
+  turned.lay_out_anew(accepted, scale);
+  turned.update(accepted, scale, 20);
+  ASSERT_FALSE(reduced.loops.empty());
+  for (const auto& loop : reduced.loops) {
+    EXPECT_LT((turned.residual(loop) - estimate.residual(loop)).norm(), 1e-6);
+  }
+  EXPECT_EQ(turned.layout().component, estimate.layout().component);
+}
+
 // Where the loops stay the same, only values are computed anew.
 TYPED_TEST(EstimateOf, CovariancesFollowTheScaleAndWhatIsTakenBack) {
   using Pose = TypeParam;

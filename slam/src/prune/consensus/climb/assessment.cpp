@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "prune/consensus/constants.hpp"
 #include "prune/consensus/log_odds.hpp"
 #include "prune/consensus/objective/run_density.hpp"
+#include "prune/consensus/runs/false_runs.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -69,8 +71,9 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   find_peak(now);
   find_nearness(now);
   follow_runs(now);
+  const auto& follows = found_.log_follows;
   const double fit = objective_.fit(now, *found_.graph, estimate_, found_.near) +
-                     bias_->log_evidence() + found_.false_runs.log_evidence;
+                     bias_->log_evidence() + std::reduce(follows.begin(), follows.end());
   // The more redundancy there is, the narrower is the peak of the scales.
   now.redundancy = {};
   if (fit + objective_.log_scale_peak(now) < least) return false;
@@ -84,6 +87,12 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   return true;
 }
 
+template <class Pose>
+void Assessment<Pose>::lay_out_anew(const Explanation<Pose>& now) {
+  estimate_.weigh_loops(accepted_information(now));
+  estimate_.lay_out_anew(now.accepted, now.scale);
+}
+
 // What each loop of a run is likely to measure by the one before, and what that says of false ones.
 template <class Pose>
 void Assessment<Pose>::follow_runs(const Explanation<Pose>& now) {
@@ -95,7 +104,7 @@ void Assessment<Pose>::follow_runs(const Explanation<Pose>& now) {
     log_led[k] = found_.run_density[k] -
                  std::max(objective_.log_mean_around(), log_alternative(static_cast<Index>(k)));
   }
-  found_.false_runs = false_runs(runs, now.accepted, log_led);
+  found_.log_follows = log_follows(runs, now.accepted, log_led);
 }
 
 template <class Pose>
@@ -406,7 +415,7 @@ double Assessment<Pose>::log_prior_odds(const Explanation<Pose>& now,
 
 template <class Pose>
 double Assessment<Pose>::log_false_run(std::span<const Index> loops) const {
-  const auto& follows = found_.false_runs.log_follows;
+  const auto& follows = found_.log_follows;
   double sum = 0.0;
   for (const Index k : loops) {
     sum += follows[k];

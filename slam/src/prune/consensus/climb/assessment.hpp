@@ -9,7 +9,6 @@
 #include "prune/consensus/objective/loop_gain.hpp"
 #include "prune/consensus/objective/objective.hpp"
 #include "prune/consensus/objective/standing.hpp"
-#include "prune/consensus/runs/false_runs.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -70,7 +69,7 @@ class Assessment {
     std::vector<Matrix> held;
     std::shared_ptr<const std::vector<Belief<Pose>>> steps;  // of odometry's residuals, if any
     std::vector<double> run_density;                         // run_density()
-    FalseRuns false_runs;
+    std::vector<double> log_follows;                         // log_follows()
   };
   const Findings& findings() const noexcept { return found_; }
 
@@ -79,6 +78,9 @@ class Assessment {
 
   /// The next assessment starts from this layout.
   void stand_on(const typename Estimate<Pose>::Layout& layout) { estimate_.restore(layout); }
+
+  /// The next assessment starts from a map that does not depend on the present one.
+  void lay_out_anew(const Explanation<Pose>& now);
 
   const Objective<Pose>& objective() const noexcept { return objective_; }
 

@@ -139,6 +139,12 @@ Explanation<Pose> Climb<Pose>::refined(const Explanation<Pose>& found) {
   return at_.now;
 }
 
+template <class Pose>
+Explanation<Pose> Climb<Pose>::all_true(const Explanation<Pose>& found) {
+  stand_at(found);
+  return settle(std::vector<bool>(found.accepted.size(), true));
+}
+
 // Grows to them first, the most certain before the rest, so that poses come near.
 template <class Pose>
 Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
@@ -254,6 +260,12 @@ bool Climb<Pose>::shift() {
   return true;
 }
 
+// Poses end at the nearest minimum to where odometry and the first accepted loops led.
+template <class Pose>
+bool Climb<Pose>::lay_out_anew() {
+  return at_.try_with([this](auto& now) { at_.assessment.lay_out_anew(now); });
+}
+
 // A loop that is taken for accurate draws the map to itself, and looks accurate there: each is as
 // accurate as the others say.
 template <class Pose>
@@ -283,10 +295,11 @@ bool Climb<Pose>::weigh_afar() {
          at_.try_with(scales_of(wider), {.learning = true});
 }
 
-// By other weights, slips or scales.
+// By another map, other weights, slips or scales.
 template <class Pose>
 bool Climb<Pose>::explain_the_same_better() {
-  return at_.once(Trial::weights_by_others, [this] { return weigh_by_others(); }) ||
+  return at_.once(Trial::map, [this] { return lay_out_anew(); }) ||
+         at_.once(Trial::weights_by_others, [this] { return weigh_by_others(); }) ||
          at_.once(Trial::afar, [this] { return weigh_afar(); }) || at_.find_slips();
 }
 

@@ -73,6 +73,9 @@ class Climb {
   /// The same loops at scales that are learnt to a tenth of what a move is worth.
   Explanation<Pose> refined(const Explanation<Pose>& found);
 
+  /// What explains best that all loops are true, from what was found.
+  Explanation<Pose> all_true(const Explanation<Pose>& found);
+
   /// What explains best that exactly these loops are true, from `start`.
   Explanation<Pose> settled_on(const std::vector<bool>& accepted, const CovarianceScale& start);
 
@@ -108,6 +111,7 @@ class Climb {
   Group next_batch() const;
   void accept(const Selection& loops);
   bool explain_the_same_better();
+  bool lay_out_anew();
   bool weigh_by_others();
   bool weigh_afar();
   bool accept_undecided();

@@ -41,6 +41,7 @@ class Position {
     lesson,
     lesson_of_scales,
     slips,
+    map,
     weights_by_others,
     afar,
     undecided,

@@ -54,7 +54,6 @@ bool SlipTrials<Pose>::for_run(const Selection& loops) {
     at_.take_as(loops, true);
     at_.assess();
     const bool slips = at_.try_best_slips(0.0);
-    if (!slips) find_slips_anew();
     Explanation<Pose> best = at_.now;
     while (slips && at_.now.evidence <= least && (at_.try_best_slips(0.0) || moves_.shift())) {
       if (at_.now.accepted[loops.front()] && at_.now.evidence > best.evidence) best = at_.now;
@@ -63,14 +62,6 @@ bool SlipTrials<Pose>::for_run(const Selection& loops) {
     doubted_.push_back(std::move(best));
     return false;
   });
-}
-
-// Of what was found without these loops no one change may do where several together would.
-template <class Pose>
-void SlipTrials<Pose>::find_slips_anew() {
-  if (!any_slips(at_.now.shapes.slips)) return;
-  at_.now.shapes.slips.clear();
-  moves_.settle();
 }
 
 template <class Pose>

@@ -39,7 +39,6 @@ class SlipTrials {
 
  private:
   bool for_run(const Selection& loops);
-  void find_slips_anew();
   std::vector<Selection> rejected_runs() const;
 
   Position<Pose>& at_;

@@ -7,6 +7,7 @@
 #include "isotherm/base/error.hpp"
 #include "isotherm/base/parallel.hpp"
 #include "isotherm/base/random.hpp"
+#include "isotherm/slam/optimize/initialize.hpp"
 #include "isotherm/spectral/sparse/block_covariance.hpp"
 #include "isotherm/spectral/sparse/earlier_factor.hpp"
 #include "matrices/decompositions.hpp"
@@ -142,6 +143,19 @@ void Estimate<Pose>::restore(Layout layout) {
   component_ = std::move(layout.component);
   factorised_ = false;
   move_.resize(0);
+}
+
+template <class Pose>
+void Estimate<Pose>::lay_out_anew(const std::vector<bool>& accepted, const CovarianceScale& scale) {
+  PoseGraph<Pose> used = used_links(accepted);
+  join_components(used);
+  const std::size_t steps = graph_->steps.size();
+  for (std::size_t k = 0; k < used.constraints.size(); ++k) {
+    Matrix& information = used.constraints[k].information;
+    information = k < steps ? information / scale.odometry : loop_information(k - steps, scale);
+  }
+  used.poses = poses_;
+  restore({initial_poses(used, {}, Initialization::chordal), component_});
 }
 
 // Of a link, where the factor was formed.

@@ -79,6 +79,11 @@ class Estimate {
   /// Where the factor was formed.
   Derivative derivative(const Link<Pose>& link) const;
 
+  /// Takes poses to the chordal relaxation of odometry and the accepted loops, which does not
+  /// depend on where they are: Gauss-Newton ends at the nearest of what may be many minima (L.
+  /// Carlone et al., "Initialization Techniques for 3D SLAM", ICRA 2015); update() must follow.
+  void lay_out_anew(const std::vector<bool>& accepted, const CovarianceScale& scale);
+
   /// Moves the free poses, so far that steps of odometry still change by little, as what they tell
   /// does; update() must follow.
   void follow(const Eigen::VectorXd& moves);

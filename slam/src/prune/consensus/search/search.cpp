@@ -56,14 +56,14 @@ std::vector<Index> sample_of(const Climb<Pose>& climb, bool soon) {
 // scales.
 template <class Pose>
 std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole,
-                                          const std::vector<Index>& sampled, bool soon) {
+                                          const std::vector<Index>& sampled, SearchDepth depth) {
   const Objective<Pose>& objective = whole.objective();
   const auto& all = objective.stated().reduced;
   std::vector<Standpoint<Pose>> standpoints;
   if (sampled.empty()) return standpoints;
   const Objective<Pose> part = objective.of(sampled);
   Climb<Pose> climb = whole.on(part);
-  const auto found = search(climb, {.to_the_last = false, .sample_soon = soon});
+  const auto found = search(climb, depth);
   if (!can_refute(found.front().accepted_count())) return standpoints;
   const double least = found.front().evidence - log_odds_of(1.0 - whole.options().significance);
   const KnownBefore known = known_of(sampled, all.loops.size());
@@ -111,6 +111,14 @@ void try_slips(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
   found.insert(found.end(), climb.doubted().begin(), climb.doubted().end());
 }
 
+// That all loops are true: those in doubt may each be so beside the others alone.
+template <class Pose>
+void weigh_all(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
+  if (best_of(found).accepts_all()) return;
+  const auto accept = [&](const auto& best) { found.push_back(climb.all_true(best)); };
+  unless_it_breaks_down(accept, best_of(found));
+}
+
 }  // namespace
 
 template <class Pose>
@@ -126,7 +134,7 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   const auto try_from = [&](const auto&... start) {
     if (!all_explained()) found.push_back(climb.from(start...));
   };
-  for (const auto& standpoint : standpoints(climb, sampled, depth.sample_soon)) {
+  for (const auto& standpoint : standpoints(climb, sampled, depth)) {
     unless_it_breaks_down(try_from, standpoint);
   }
   const auto astray = [&] { return is_astray(climb, found); };
@@ -142,6 +150,7 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   } else if (calibrate && !astray()) {
     try_slips(climb, found);
     if (at_once) settle_anew(climb, found);
+    if (at_once) weigh_all(climb, found);
   }
   for (const StartScales& start : std::span(kStarts).subspan(kStartsAlways)) {
     if (!calibrate || !astray()) break;
