@@ -270,8 +270,8 @@ TEST(Search, WeighsThatAllLoopsAreTrue) {
   EXPECT_TRUE(std::ranges::any_of(found, &Explanation<Pose2>::accepts_all));
 }
 
-// Six edges of two dozen slip, and half of the loops are rejected. Run after run tells slips, until
-// no single change explains the last loop beside them: without new ones for all it stays rejected.
+// Six edges of two dozen slip, and half of the loops are rejected by the first climb. Run after run
+// tells slips, until no single change explains the last loop beside them.
 TEST(Search, FindsSlipsThatTheLastLoopTellsWithAllOthers) {
   Random random(57);
   constexpr std::size_t kLoops = 35;
@@ -400,11 +400,12 @@ TEST(Search, GoesFarWhereNoStartLeadsAnywhere) {
 // From odometry that is taken for ten times less accurate than it is, lessons alone end a thousand
 // nats below (seed 2); from loops that are taken for exact with all of them nine times worse than
 // most (seed 3).
-// Odometry that errs by a fifth of a radian a step: its map is in the wrong valley.
+// Odometry that errs by a third of a radian a step: of one of these its map, and the one that
+// follows from it, is in a wrong valley.
 TEST(Climb, FindsNoLowerAMapThanFromTheTruth) {
-  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
     Random random(seed);
-    const auto made = random_loop_graph<Pose3>(random, 100, 30, 1.0, 25.0);
+    const auto made = random_loop_graph<Pose3>(random, 100, 30, 1.0, 10.0);
     const Objective<Pose3> objective(made.graph, edge_roles(made.graph), kWindow);
     Climb<Pose3> climb(objective, kOptions, kSilent);
     const auto found = climb.settled_on(std::vector<bool>(30, true), {});
