@@ -81,7 +81,7 @@ const Explanation<Pose>& best_of(const std::vector<Explanation<Pose>>& found) {
 ///
 /// with p by Laplace's approximation from the factor that the estimate holds, without what does not
 /// depend on A and the scales (of odometry without cycles that is all of its own: p is that of z_A
-/// given odometry), f_mean, f(z) and f(h) as in NearDensity, r as in FalseRuns, pi(A) as in
+/// given odometry), f_mean, f(z) and f(h) as in NearDensity, r as in log_follows, pi(A) as in
 /// LabelCounts. The scales are log-normal around what the file states (scale_prior.hpp) and
 /// integrated over by Laplace's approximation. Which loops are as accurate as most and which less
 /// (ScaleShares) is integrated out by variational Bayes (Bishop, Pattern Recognition and Machine
