@@ -397,9 +397,6 @@ TEST(Search, GoesFarWhereNoStartLeadsAnywhere) {
   EXPECT_EQ(search(climb).front().accepted, std::vector<bool>(30, true));
 }
 
-// From odometry that is taken for ten times less accurate than it is, lessons alone end a thousand
-// nats below (seed 2); from loops that are taken for exact with all of them nine times worse than
-// most (seed 3).
 // Odometry that errs by a third of a radian a step: of one of these its map, and the one that
 // follows from it, is in a wrong valley.
 TEST(Climb, FindsNoLowerAMapThanFromTheTruth) {
@@ -419,6 +416,9 @@ TEST(Climb, FindsNoLowerAMapThanFromTheTruth) {
   }
 }
 
+// From odometry that is taken for ten times less accurate than it is, lessons alone end a thousand
+// nats below (seed 2); from loops that are taken for exact with all of them nine times worse than
+// most (seed 3).
 TEST(Climb, SettlesAboutAsHighFromAnyStart) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const auto city = simulate_city({.poses = 300, .measurements = {.loops = 120}, .seed = seed});

@@ -111,7 +111,7 @@ void try_slips(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
   found.insert(found.end(), climb.doubted().begin(), climb.doubted().end());
 }
 
-// That all loops are true: those in doubt may each be so beside the others alone.
+// That all loops are true: each that is rejected may be refuted without the others alone.
 template <class Pose>
 void weigh_all(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
   if (best_of(found).accepts_all()) return;
@@ -149,8 +149,10 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
     if (to_the_last) unless_it_breaks_down(refine, best_of(found));
   } else if (calibrate && !astray()) {
     try_slips(climb, found);
-    if (at_once) settle_anew(climb, found);
-    if (at_once) weigh_all(climb, found);
+    if (at_once) {
+      settle_anew(climb, found);
+      weigh_all(climb, found);
+    }
   }
   for (const StartScales& start : std::span(kStarts).subspan(kStartsAlways)) {
     if (!calibrate || !astray()) break;
