@@ -101,7 +101,9 @@ TYPED_TEST(EstimateOf, DrawsMapsOfTheCovarianceThatPosesHave) {
   const auto& poses = estimate.poses();
   const Pose expected = poses[loop.a].inverse() * poses[loop.b];
   Matrix drawn = Matrix::Zero();
-  for (const auto& map : estimate.drawn(scale, kDraws)) {
+  const Eigen::MatrixXd all = estimate.drawn(scale, kDraws);
+  for (const auto& moves : all.colwise()) {
+    const auto map = estimate.moved(moves);
     const auto off = (expected.inverse() * (map[loop.a].inverse() * map[loop.b])).log().eval();
     drawn += off * off.transpose() / static_cast<double>(kDraws);
   }
@@ -110,6 +112,23 @@ TYPED_TEST(EstimateOf, DrawsMapsOfTheCovarianceThatPosesHave) {
   const Matrix known =
       J.inverse() * estimate.residual_covariances(link)[0] * J.inverse().transpose();
   EXPECT_LT((drawn - known).norm(), 0.1 * known.norm());
+}
+
+// Though the end of the chain may lie anywhere, no step is off by more than it errs.
+TYPED_TEST(EstimateOf, DrawsMapsThatTearNoStepApart) {
+  using Pose = TypeParam;
+  Random random(20);
+  const auto made = random_loop_graph<Pose>(random, 400, 60, 0.0, 100.0);
+  const auto reduced = reduce(made.graph, edge_roles(made.graph));
+  Estimate<Pose> estimate(reduced);
+  estimate.update(std::vector<bool>(reduced.loops.size()), {}, 10);
+  const auto map = estimate.moved(estimate.drawn({}, 1));
+  double chi2 = 0.0;
+  for (const auto& step : reduced.steps) {
+    const auto r = step.T_a_b.between(map[step.a].between(map[step.b])).log().eval();
+    chi2 += r.dot(step.information * r);
+  }
+  EXPECT_NEAR(chi2 / static_cast<double>(Pose::kDof * reduced.steps.size()), 1.0, 0.2);
 }
 
 // What one loop says is all that is new, whichever loops there are.
@@ -122,10 +141,10 @@ TYPED_TEST(EstimateOf, DrawsMapsThatChangeLittleWithALoop) {
   Estimate<Pose> estimate(reduced);
   std::vector<bool> accepted(reduced.loops.size(), true);
   estimate.update(accepted, {}, 10);
-  const auto with = estimate.drawn({}, 1).front();
+  const auto with = estimate.moved(estimate.drawn({}, 1));
   accepted[3] = false;
   estimate.update(accepted, {}, 10);
-  const auto without = estimate.drawn({}, 1).front();
+  const auto without = estimate.moved(estimate.drawn({}, 1));
   for (std::size_t v = 0; v < with.size(); ++v) {
     EXPECT_LT((without[v].inverse() * with[v]).log().norm(), 1e-4);
   }

@@ -21,7 +21,7 @@ constexpr int kMostBiases = 12;  // of odometry, one after the other
 constexpr int kFixedPointSteps = 30;
 
 // Maps on which near pairs are counted.
-constexpr std::size_t kMaps = 2;
+constexpr std::size_t kMaps = 4;
 
 // Covariances, in times of a factorisation (measured).
 constexpr double kCovarianceWork = 2.0;
@@ -122,11 +122,12 @@ void Assessment<Pose>::find_nearness(const Explanation<Pose>& now) {
 
 template <class Pose>
 std::vector<std::vector<Pose>> Assessment<Pose>::drawn_maps(const CovarianceScale& scale) const {
-  auto maps = estimate_.drawn(scale, kMaps);
+  const Eigen::MatrixXd drawn = estimate_.drawn(scale, kMaps);
+  std::vector<std::vector<Pose>> maps;
   Random random(kMaps);  // others than the seeds of those
-  for (auto& map : maps) {
+  for (const auto& moves : drawn.colwise()) {
     const auto deviations = random.normal_vector<TurnBias<Pose>>();
-    estimate_.retract(bias_->moves(bias_->drawn(deviations)), map);
+    maps.push_back(estimate_.moved(moves + bias_->moves(bias_->drawn(deviations))));
   }
   return maps;
 }

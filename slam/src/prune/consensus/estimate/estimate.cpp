@@ -108,7 +108,7 @@ template <class Pose>
 double Estimate<Pose>::step() {
   move_ = next_move();
   const double decrement = -move_.dot(equations_->gradient());
-  equations_->retract(move_, poses_);
+  poses_ = moved(move_);
   return std::sqrt(std::max(decrement, 0.0) / static_cast<double>(1 + used_loops_.size()));
 }
 
@@ -179,22 +179,28 @@ typename Estimate<Pose>::Derivative Estimate<Pose>::derivative(const Link<Pose>&
   return {r, -J * T_a_b.inverse().adjoint(), J};
 }
 
-// Along a chain far turns are those of many steps, each of which turns by little.
+// Far turns are those of many steps, each of which turns by little.
 template <class Pose>
-void Estimate<Pose>::follow(const Eigen::VectorXd& moves) {
-  const std::vector<Pose> before = poses_;
+std::vector<Pose> Estimate<Pose>::moved(const Eigen::VectorXd& moves) const {
+  std::vector<Pose> map = poses_;
   const auto of = [&](Index node) -> Tangent {
     const Index v = equations_->gauge().variable[node];
     if (v < 0) return Tangent::Zero();
     return moves.template segment<Pose::kDof>(v * Pose::kDof);
   };
-  equations_->retract(moves, poses_);
+  equations_->retract(moves, map);
   for (std::size_t k = 0; k < graph_->contracted; ++k) {
     const auto& step = graph_->steps[k];
-    const Pose T_a_b = before[step.a].between(before[step.b]);
+    const Pose T_a_b = poses_[step.a].between(poses_[step.b]);
     const Tangent change = of(step.b) - T_a_b.inverse().adjoint() * of(step.a);
-    poses_[step.b] = poses_[step.a] * T_a_b * Pose::exp(change);
+    map[step.b] = map[step.a] * T_a_b * Pose::exp(change);
   }
+  return map;
+}
+
+template <class Pose>
+void Estimate<Pose>::follow(const Eigen::VectorXd& moves) {
+  poses_ = moved(moves);
   factorised_ = false;
   move_.resize(0);
 }
@@ -233,8 +239,7 @@ void Estimate<Pose>::add_errors(const Link<Pose>& link, const Matrix& informatio
 // Where least squares would be had every link another error: those solutions have the covariance
 // of the poses (Papandreou and Yuille, Perturb-and-MAP random fields, ICCV 2011).
 template <class Pose>
-std::vector<std::vector<Pose>> Estimate<Pose>::drawn(const CovarianceScale& scale,
-                                                     std::size_t count) const {
+Eigen::MatrixXd Estimate<Pose>::drawn(const CovarianceScale& scale, std::size_t count) const {
   std::vector<Random> random;
   for (std::size_t seed = 0; seed < count; ++seed) random.emplace_back(seed);
   std::vector<Tangent> errors(count);
@@ -252,12 +257,7 @@ std::vector<std::vector<Pose>> Estimate<Pose>::drawn(const CovarianceScale& scal
     if (used == used_loops_.size() || used_loops_[used] != static_cast<Index>(k)) continue;
     add_errors(graph_->loops[k], loop_information(used++, scale), of_loop, gradients);
   }
-  std::vector<std::vector<Pose>> maps(count, poses_);
-  for (std::size_t m = 0; m < count; ++m) {
-    const Eigen::VectorXd gradient = gradients.col(static_cast<Eigen::Index>(m));
-    equations_->retract(equations_->hessian().solve(gradient), maps[m]);
-  }
-  return maps;
+  return equations_->hessian().solve(gradients);
 }
 
 template <class Pose>

@@ -45,10 +45,10 @@ class Estimate {
 
   const std::vector<Pose>& poses() const noexcept { return poses_; }
 
-  /// So many maps drawn from those that odometry and the accepted loops leave possible: near
-  /// poses(), by their joint covariance after an update at this scale. Always the same draws, that
-  /// change little with the loops accepted: the errors of each link are the same.
-  std::vector<std::vector<Pose>> drawn(const CovarianceScale& scale, std::size_t count) const;
+  /// Moves of the free poses, a column each, drawn from those that odometry and the accepted loops
+  /// leave possible: by their joint covariance after an update at this scale. Always the same
+  /// draws, that change little with the loops accepted: the errors of each link are the same.
+  Eigen::MatrixXd drawn(const CovarianceScale& scale, std::size_t count) const;
 
   /// Where the poses are, without the factor there.
   struct Layout {
@@ -84,14 +84,13 @@ class Estimate {
   /// Carlone et al., "Initialization Techniques for 3D SLAM", ICRA 2015); update() must follow.
   void lay_out_anew(const std::vector<bool>& accepted, const CovarianceScale& scale);
 
-  /// Moves the free poses, so far that steps of odometry still change by little, as what they tell
-  /// does; update() must follow.
-  void follow(const Eigen::VectorXd& moves);
+  /// The map where the free poses have moved by so much, composed along odometry: each step changes
+  /// as its ends' moves say to first order. However far these are, steps that they change by little
+  /// stay whole; poses that move each by itself tear apart what turns with them.
+  std::vector<Pose> moved(const Eigen::VectorXd& moves) const;
 
-  /// A map near poses() where the free ones are moved by so much.
-  void retract(const Eigen::VectorXd& moves, std::vector<Pose>& map) const {
-    equations_->retract(moves, map);
-  }
+  /// Moves the free poses as moved(); update() must follow.
+  void follow(const Eigen::VectorXd& moves);
 
   /// Covariances of the residuals of `links` where the factor of the last update was formed, found
   /// on `threads` threads (0: all cores). The ends of each must be connected.
