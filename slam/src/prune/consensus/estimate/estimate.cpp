@@ -108,7 +108,7 @@ template <class Pose>
 double Estimate<Pose>::step() {
   move_ = next_move();
   const double decrement = -move_.dot(equations_->gradient());
-  poses_ = moved(move_);
+  equations_->retract(move_, poses_);
   return std::sqrt(std::max(decrement, 0.0) / static_cast<double>(1 + used_loops_.size()));
 }
 
