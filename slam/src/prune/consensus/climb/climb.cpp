@@ -38,7 +38,8 @@ Climb<Pose>::Climb(const Objective<Pose>& objective, ConsensusOptions options, R
       options_(std::move(options)),
       run_(std::move(run)),
       pace_(std::move(pace)),
-      at_(objective, options_.calibrate, pace_, run_.threads) {}
+      at_(objective, options_.calibrate, pace_, run_.threads),
+      last_held_(objective.stated().reduced.loops.size()) {}
 
 template <class Pose>
 Explanation<Pose> Climb<Pose>::from(const CovarianceScale& scale, bool known) {
@@ -58,7 +59,7 @@ void Climb<Pose>::take_what_agrees(const Explanation<Pose>& none) {
   {
     const auto known = at_.assessment.as_if_scales_were_known();
     start(none);
-    for (int round = 0; round < options_.max_rounds && shift(); ++round) tell_progress();
+    shift_and([] { return false; });
   }
   at_.assess();
 }
@@ -151,7 +152,7 @@ Explanation<Pose> Climb<Pose>::settled_on(const std::vector<bool>& accepted,
                                           const CovarianceScale& start_scale) {
   start(none_at(start_scale));
   for (std::size_t k = 0; k < accepted.size(); ++k) at_.dropped[k] = !accepted[k];
-  grow();
+  shift_and([this] { return at_.learn_more_than(0.0) || explain_the_same_better(); });
   return settle(accepted);
 }
 
@@ -244,6 +245,12 @@ bool Climb<Pose>::move() {
          (at_.is_highest() && at_.once(Trial::doubted, [this] { return drop_doubted_run(); }));
 }
 
+// Until neither finds anything.
+template <class Pose>
+void Climb<Pose>::shift_and(const std::function<bool()>& other) {
+  for (int round = 0; round < options_.max_rounds && (shift() || other()); ++round) tell_progress();
+}
+
 // The same at about these scales.
 template <class Pose>
 bool Climb<Pose>::shift() {
@@ -321,7 +328,8 @@ bool Climb<Pose>::accept_undecided() {
 }
 
 // Loops of a run hold each other, and the map: each by itself looks true beside the others. Only
-// where nothing higher was found, since a trial of each run takes time.
+// where nothing higher was found, since a trial of each run takes time: those that the map could
+// not spare when they were last tried come last, since they are likely still needed.
 template <class Pose>
 bool Climb<Pose>::drop_doubted_run() {
   std::vector<bool> doubted(at_.now.accepted.size());
@@ -329,13 +337,18 @@ bool Climb<Pose>::drop_doubted_run() {
     doubted[k] = at_.now.accepted[k] && at_.now.standings[k].log_odds < beyond_doubt();
   }
   auto runs = groups_of(at_.assessment, at_.now, doubted);
-  const auto gain = [this](const Group& run) { return gain_of_dropping(run.loops); };
-  std::ranges::stable_sort(runs, std::greater{}, gain);
+  const auto promise = [this](const Group& run) {
+    return std::pair(-last_held_[run.loops.front()], gain_of_dropping(run.loops));
+  };
+  std::ranges::stable_sort(runs, std::greater{}, promise);
   for (const Group& run : runs) {
     const auto drop = [&](auto&) { at_.take_as(run.loops, false); };
-    if (!at_.try_with(drop, {.learning = true})) continue;
-    note(0, run.loops.size());
-    return true;
+    if (at_.try_with(drop, {.learning = true})) {
+      note(0, run.loops.size());
+      return true;
+    }
+    ++held_;
+    for (const Index k : run.loops) last_held_[k] = held_;
   }
   return false;
 }

@@ -104,6 +104,7 @@ class Climb {
   const Explanation<Pose>* grow();
   bool move();
   bool shift();
+  void shift_and(const std::function<bool()>& other);
   Selection misfits() const;
   double gain_of_dropping(const Selection& loops) const;
   void drop(const Selection& loops);
@@ -129,6 +130,8 @@ class Climb {
   std::vector<Explanation<Pose>> doubted_;
   bool looks_afar_ = true;
   bool to_the_last_ = true;
+  int held_ = 0;                // runs that were tried, and could not be spared
+  std::vector<int> last_held_;  // by loop, the last of those that it was of
   std::vector<ConsensusMove> moves_;
   bool settled_ = true;
 };

@@ -38,10 +38,11 @@ struct Component {
   Tangent cost;  // in the file's units
   Tangent redundancy;
   Tangent most = Tangent::Constant(kMostScale);  // of logs of the factors
+  double steps = 0.0;                            // that vary by no more than that
 
   double evidence(const Tangent& logs) const {
     return -0.5 * (cost.dot((-logs).array().exp().matrix()) + redundancy.dot(logs)) +
-           log_scale_peak(logs, redundancy);
+           log_scale_peak(logs, redundancy) - log_excess(logs, most, steps);
   }
 
   // The same with each coordinate's the mean of its part, translation or rotation.
@@ -58,7 +59,7 @@ struct Component {
   // Logs of the factors where the evidence has its peak. Correlated coordinates have their cost
   // together: where one's is negative it cannot be told apart.
   Tangent likeliest(const Tangent& before, bool same_shapes) const {
-    if (redundancy.sum() < 1.0 || !(cost.sum() > 0.0)) return before;
+    if (redundancy.sum() < 1.0 || !(cost.sum() > 0.0)) return before.cwiseMin(most);
     if (same_shapes) {
       const Tangent own = before.array() - before.mean();
       const double scale = drawn_in(cost.dot((-own).array().exp().matrix()), redundancy.sum());
@@ -211,12 +212,13 @@ Component<typename Pose::Tangent> told_apart(const Component<typename Pose::Tang
 
 // What odometry tells of its own; loops as they are.
 template <class Pose>
-Lesson<Pose> of_odometry(const Explanation<Pose>& explanation, const typename Pose::Tangent& most,
+Lesson<Pose> of_odometry(const Explanation<Pose>& explanation, const Objective<Pose>& objective,
                          bool same_shapes) {
   using Tangent = typename Pose::Tangent;
   const auto& [scale, shapes] = std::tie(explanation.scale, explanation.shapes);
   const Component<Tangent> odometry{explanation.odometry_cost.cwiseProduct(shapes.odometry),
-                                    explanation.redundancy.odometry, most};
+                                    explanation.redundancy.odometry, objective.most_odometry(),
+                                    objective.odometry_count()};
   const Tangent before = log_scales(scale.odometry, shapes.odometry);
   const Tangent now = told_apart<Pose>(odometry).likeliest(before, same_shapes);
   Lesson<Pose> lesson{scale, shapes, explanation.shares};
@@ -258,8 +260,7 @@ Lesson<Pose> learn(const Assessment<Pose>& assessment, const Explanation<Pose>& 
   const ScaleShares& shares = explanation.shares;
   const double before =
       log_likelihood<Pose>({explanation.scale.loops, explanation.shapes.loops, shares}, residuals);
-  const Lesson<Pose> odometry =
-      of_odometry(explanation, assessment.objective().most_odometry(), same_shapes);
+  const Lesson<Pose> odometry = of_odometry(explanation, assessment.objective(), same_shapes);
   Lesson<Pose> best = odometry;
   for (const ScaleShift& start :
        {ScaleShift{1.0, shares}, wider_most(shares), sharper_most(shares)}) {

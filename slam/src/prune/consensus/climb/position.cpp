@@ -17,6 +17,7 @@ void Position<Pose>::begin() {
   dropped.assign(now.accepted.size(), false);
   learnt_from_ = 0;
   failed_ = {};
+  promised_ = 0.0;
   assessment.assess(now);
   best = now;
 }
@@ -25,6 +26,7 @@ template <class Pose>
 bool Position<Pose>::assess(double least) {
   if (!assessment.assess(now, least)) return false;
   failed_ = {};
+  promised_ = 0.0;
   if (now.evidence > best.evidence) best = now;
   peaks.pass(now);
   return true;
@@ -57,7 +59,7 @@ std::vector<bool> Position<Pose>::open() const {
 
 template <class Pose>
 bool Position<Pose>::all_or_nothing(const std::function<bool()>& moves) {
-  const Place before{now, assessment.findings(), failed_, dropped};
+  const Place before{now, assessment.findings(), failed_, promised_, dropped};
   bool better = false;
   try {
     better = moves();
@@ -71,10 +73,11 @@ bool Position<Pose>::all_or_nothing(const std::function<bool()>& moves) {
 template <class Pose>
 bool Position<Pose>::try_with(const Change& change, TrialTerms terms) {
   const double least = now.evidence + terms.gain;
+  const double known = promised_ + kBetter;
   return all_or_nothing([&] {
     change(now);
     if (terms.learning) assessment.forget_nearness();
-    return terms.learning ? assess() && outdoes(least) : assess(least);
+    return terms.learning ? assess() && outdoes(least, known) : assess(least);
   });
 }
 
@@ -83,6 +86,7 @@ void Position<Pose>::go_back(const Place& place) {
   now = place.now;
   assessment.restore(now, place.found);
   failed_ = place.failed;
+  promised_ = place.promised;
   dropped = place.dropped;
 }
 
@@ -97,19 +101,20 @@ bool Position<Pose>::learn_more_than(double gain, double worth) {
     if (found.gain <= least) continue;
     if (try_with(scales_of(found), {.gain = worth})) return true;
     failed_[trial] = true;
+    promised_ = std::max(promised_, found.gain);
     if (found.shapes.is_about(now.shapes)) failed_[Trial::lesson_of_scales] = true;
   }
   return false;
 }
 
 // Each lesson gains less than the one before: it ends where one more like the last would not lead
-// there.
+// there. One that promises no more than what failed where the trial began would fail as well.
 template <class Pose>
-bool Position<Pose>::outdoes(double evidence) {
+bool Position<Pose>::outdoes(double evidence, double known) {
   double before = -std::numeric_limits<double>::infinity();
   while (now.evidence <= evidence && 2.0 * now.evidence - before > evidence) {
     before = now.evidence;
-    if (!learn_more_than(0.0)) break;
+    if (!learn_more_than(known)) break;
   }
   return now.evidence > evidence;
 }

@@ -108,17 +108,20 @@ class Position {
     Explanation<Pose> now;
     typename Assessment<Pose>::Findings found;
     std::array<bool, trials> failed;
+    double promised;
     std::vector<bool> dropped;
   };
 
-  // Whether the scales that can be learnt from here explain the same loops better.
-  bool outdoes(double evidence);
+  // Whether the scales that can be learnt from here by more than that explain the same loops
+  // better.
+  bool outdoes(double evidence, double known);
   void go_back(const Place& place);
   void slip(std::span<const SlipChange> changes);
 
   bool calibrate_;
   std::size_t learnt_from_ = 0;
   std::array<bool, trials> failed_{};
+  double promised_ = 0.0;  // by the lessons that failed
 };
 
 extern template class Position<Pose2>;

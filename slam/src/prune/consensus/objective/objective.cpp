@@ -154,10 +154,9 @@ double Objective<Pose>::log_scale_peak(const Explanation<Pose>& explanation) con
   };
   const auto& [scale, shapes, redundancy] =
       std::tie(explanation.scale, explanation.shapes, explanation.redundancy);
-  const auto steps = static_cast<double>(roles_.odometry.size());
   return log_slips(explanation) + peak(scale.odometry, shapes.odometry, redundancy.odometry) +
          peak(scale.loops, shapes.loops, redundancy.loops) -
-         log_excess(log_scales(scale.odometry, shapes.odometry), most_odometry_, steps);
+         log_excess(log_scales(scale.odometry, shapes.odometry), most_odometry_, odometry_count());
 }
 
 template class Objective<Pose2>;
