@@ -19,14 +19,26 @@ class LessonOf : public testing::Test {
  protected:
   static constexpr int kLoops = 60;
 
-  /// All loops accepted.
+  /// All loops accepted, or none.
   Explanation<Pose> assess(Assessment<Pose>& assessment, const CovarianceScale& scale,
-                           const ScaleShares& shares) const {
-    Explanation<Pose> now{.accepted = std::vector<bool>(kLoops, true), .scale = scale};
+                           const ScaleShares& shares, bool accepted = true) const {
+    Explanation<Pose> now{.accepted = std::vector<bool>(kLoops, accepted), .scale = scale};
     now.shares = shares;
     now.weights.resize(kLoops);
     assessment.assess(now);
     return now;
+  }
+
+  /// Steps that vary by their errors alone; loops stay as they are, which is far off.
+  void go_evenly() {
+    typename Pose::Tangent ahead = Pose::Tangent::Zero();
+    ahead[0] = 0.5;
+    for (const Index k : edge_roles(graph_).odometry) {
+      auto& step = graph_.constraints[k];
+      const auto error = isotherm_test::random_error<Pose>(random_, step.information);
+      const double onward = step.from < step.to ? 1.0 : -1.0;
+      step.T_from_to = Pose::exp(onward * ahead) * Pose::exp(error);
+    }
   }
 
   Random random_{5};
@@ -72,22 +84,34 @@ TYPED_TEST(LessonOf, ScalesOfCoordinatesAreWhereTheGradientIsZero) {
 // Loops that are far off would have odometry err more than its even steps vary.
 TYPED_TEST(LessonOf, OdometryErrsNoMoreThanItsStepsVary) {
   using Pose = TypeParam;
-  const auto roles = edge_roles(this->graph_);
-  typename Pose::Tangent ahead = Pose::Tangent::Zero();
-  ahead[0] = 0.5;
-  for (const Index k : roles.odometry) {
-    auto& step = this->graph_.constraints[k];
-    const auto error = isotherm_test::random_error<Pose>(this->random_, step.information);
-    const double onward = step.from < step.to ? 1.0 : -1.0;
-    step.T_from_to = Pose::exp(onward * ahead) * Pose::exp(error);
-  }
+  this->go_evenly();
   for (const bool same_shapes : {false, true}) {
-    const Objective<Pose> objective(this->graph_, roles, 20);
+    const Objective<Pose> objective(this->graph_, edge_roles(this->graph_), 20);
     Assessment<Pose> assessment(objective);
     const auto now = this->assess(assessment, {1.0, 1.0}, {{60.0, 0.0, 0.0, 0.0}});
     const auto lesson = learn(assessment, now, same_shapes);
     const typename Pose::Tangent logs = log_scales(lesson.scale.odometry, lesson.shapes.odometry);
     EXPECT_NEAR((logs - objective.most_odometry()).maxCoeff(), 0.0, 1e-9) << "as far as they may";
+  }
+}
+
+// Nor where nothing else tells of it: no loop is accepted.
+TYPED_TEST(LessonOf, OdometryTakenForWorseThanItsStepsVaryIsLearntFromThemAlone) {
+  using Pose = TypeParam;
+  this->go_evenly();
+  for (const bool same_shapes : {false, true}) {
+    const Objective<Pose> objective(this->graph_, edge_roles(this->graph_), 20);
+    Assessment<Pose> assessment(objective);
+    const auto now = this->assess(assessment, {100.0, 1.0}, {}, false);
+    const auto lesson = learn(assessment, now, same_shapes);
+    auto taken = now;
+    taken.scale = lesson.scale;
+    taken.shapes = lesson.shapes;
+    ASSERT_TRUE(assessment.assess(taken));
+    EXPECT_NEAR(lesson.gain, taken.evidence - now.evidence, 0.05 * lesson.gain);
+    EXPECT_GT(lesson.gain, 100.0);
+    const typename Pose::Tangent logs = log_scales(lesson.scale.odometry, lesson.shapes.odometry);
+    EXPECT_LT((logs - objective.most_odometry()).maxCoeff(), 1e-9);
   }
 }
 
