@@ -36,9 +36,6 @@ CONSTANTS = [
     Constant("kLoopsBefore", "1", "loops of either kind that count as seen before any is", (0.5, 4)),
     Constant("kFalseFollowing", "0.05", "share of false loops after a false one that follow it",
              (0.005, 0.3)),
-    Constant("kFalseByChance", "100",
-             "false loops by chance that count as seen, against one wrong measurement", (10, 1000)),
-    Constant("kWrongScale", "10", "times as much as most a wrong measurement errs", (5, 20)),
     Constant("kTailDof", "4", "degrees of freedom of Student's t of what loops measure", (2, 8)),
     Constant("kReach", "3.5", "deviations to which a kernel of near pairs reaches", (2, 7)),
     Constant("kFewLoops", "5", "loops of which none is pruned if there are fewer", (0, 20)),
@@ -186,8 +183,7 @@ def page(base, rows, cell_count):
              line_of("as they are", "", "", "", base, base, True)]
     for constant in CONSTANTS:
         model = constant.name in ("kScaleDeviation", "kScaleStep", "kLoopsBefore", "kTailDof",
-                                  "kReach", "kBiasDeviation", "kFalseFollowing",
-                                  "kFalseByChance", "kWrongScale")
+                                  "kReach", "kBiasDeviation", "kFalseFollowing")
         lines += [line_of(f"`{constant.name}`", constant.meaning, constant.value, f"{value:g}",
                           rows[f"{constant.name}={value:g}"], base, not model)
                   for value in constant.tried if f"{constant.name}={value:g}" in rows]

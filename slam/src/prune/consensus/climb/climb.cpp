@@ -307,7 +307,7 @@ template <class Pose>
 bool Climb<Pose>::explain_the_same_better() {
   return at_.once(Trial::map, [this] { return lay_out_anew(); }) ||
          at_.once(Trial::weights_by_others, [this] { return weigh_by_others(); }) ||
-         at_.find_slips() || at_.once(Trial::afar, [this] { return weigh_afar(); });
+         at_.once(Trial::afar, [this] { return weigh_afar(); }) || at_.find_slips();
 }
 
 // All loops that are not false beyond doubt: where a part of the map is off each of them speaks for

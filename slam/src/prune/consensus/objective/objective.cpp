@@ -7,9 +7,7 @@
 #include "matrices/decompositions.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
 #include "prune/consensus/estimate/map_volume.hpp"
-#include "prune/consensus/log_sum.hpp"
 #include "prune/consensus/objective/own_frames.hpp"
-#include "prune/consensus/objective/wrong_measurement.hpp"
 #include "prune/consensus/odometry/step_spread.hpp"
 
 namespace isotherm::slam::detail {
@@ -85,30 +83,6 @@ double Objective<Pose>::log_nearer(Index loop, const typename Pose::Tangent& r) 
   if (runs_.copied(loop)) return 0.0;
   const auto& link = stated_.reduced.loops[loop];
   return near_.log_nearer(link.T_a_b, r, stated_.reduced.is_forward(link));
-}
-
-template <class Pose>
-double Objective<Pose>::log_place(const Explanation<Pose>& now, const ScaledGraph<Pose>& graph,
-                                  Index loop, const Belief<Pose>& belief,
-                                  const NearByClass& near) const {
-  if (runs_.copied(loop)) return 0.0;
-  const typename Pose::Matrix most = now.scale.loops * graph.reduced.loops[loop].covariance;
-  return log_wrong<Pose>(belief.r, most, belief.P) + log_nearer(loop, belief.r) -
-         near[proposal_class(graph.reduced, loop)];
-}
-
-template <class Pose>
-double Objective<Pose>::log_place(const Explanation<Pose>& now, const ScaledGraph<Pose>& graph,
-                                  Index loop, const std::vector<std::vector<Pose>>& maps,
-                                  const NearByClass& near) const {
-  const auto& link = graph.reduced.loops[loop];
-  double sum = kNever;
-  for (const auto& map : maps) {
-    const Belief<Pose> known{link.T_a_b.between(map[link.a].between(map[link.b])).log(),
-                             Pose::Matrix::Zero()};
-    sum = log_sum(sum, log_place(now, graph, loop, known, near));
-  }
-  return sum - std::log(static_cast<double>(maps.size()));
 }
 
 // Log densities of the accepted loops at the peak, and of their scales; how near they are.

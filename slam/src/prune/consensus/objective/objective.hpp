@@ -142,14 +142,6 @@ class Objective {
   /// nothing, since what it measures was drawn with another.
   double log_nearer(Index loop, const typename Pose::Tangent& r) const;
 
-  /// log of how much likelier than by chance a false loop of the right place is, where its ends lie
-  /// as `belief` has it, or as on one of these maps, `near` by chance: it is proposed as a true one
-  /// is, and measured as in log_wrong(). Of a copy 0, since its ends were proposed with another's.
-  double log_place(const Explanation<Pose>& now, const ScaledGraph<Pose>& graph, Index loop,
-                   const Belief<Pose>& belief, const NearByClass& near) const;
-  double log_place(const Explanation<Pose>& now, const ScaledGraph<Pose>& graph, Index loop,
-                   const std::vector<std::vector<Pose>>& maps, const NearByClass& near) const;
-
   /// See NearDensity::log_mean_around(): around loops that lead others.
   double log_mean_around() const noexcept { return log_mean_around_; }
 
