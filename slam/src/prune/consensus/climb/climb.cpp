@@ -218,7 +218,8 @@ void Climb<Pose>::stand_on(Standpoint<Pose> standpoint) {
 // The peak of an earlier climb that this one leads to, if any.
 template <class Pose>
 const Explanation<Pose>* Climb<Pose>::grow() {
-  int vain = 0;  // moves since the best explanation so far
+  int vain = 0;          // moves since the best explanation so far
+  std::size_t most = 0;  // loops so far: a climb that grows again to as many goes round in a circle
   for (int round = 0; round < options_.max_rounds; ++round) {
     tell_progress();
     const double before = at_.best.evidence;
@@ -227,7 +228,9 @@ const Explanation<Pose>* Climb<Pose>::grow() {
         had >= kMoreTelling * at_.learnt_from() && at_.learn_more_than(gain_of_dropping(misfits()));
     if (const auto* known = had > 0 ? at_.peaks.beyond(at_.now) : nullptr) return known;
     if (!learnt && !move()) return nullptr;
-    const bool grows = 2 * at_.now.accepted_count() >= 3 * had;
+    const std::size_t has = at_.now.accepted_count();
+    const bool grows = 2 * has >= 3 * had && has > most;
+    most = std::max(most, has);
     vain = grows || at_.best.evidence > before + kBetter ? 0 : vain + 1;
     if (vain == kMostVain) return nullptr;
   }
