@@ -109,6 +109,7 @@ class Objective {
   }
   const Runs<Pose>& runs() const noexcept { return runs_; }
   std::size_t odometry_edges() const noexcept { return chain_.size(); }
+  /// How many measurements of odometry there are, repeated ones and all.
   double odometry_count() const noexcept { return static_cast<double>(roles_.odometry.size()); }
 
   /// Logs of the factors on odometry's variances at most, by coordinate: of larger errors its steps
