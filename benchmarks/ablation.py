@@ -36,6 +36,8 @@ CONSTANTS = [
     Constant("kLoopsBefore", "1", "loops of either kind that count as seen before any is", (0.5, 4)),
     Constant("kFalseFollowing", "0.05", "share of false loops after a false one that follow it",
              (0.005, 0.3)),
+    Constant("kFalseByChance", "100",
+             "false loops by chance that count as seen, against one wrong measurement", (10, 1000)),
     Constant("kTailDof", "4", "degrees of freedom of Student's t of what loops measure", (2, 8)),
     Constant("kReach", "3.5", "deviations to which a kernel of near pairs reaches", (2, 7)),
     Constant("kFewLoops", "5", "loops of which none is pruned if there are fewer", (0, 20)),
@@ -85,8 +87,8 @@ MOVES = {
     "climbs ended where an earlier one passed":
         ("climb/peaks.cpp", "::beyond(const Explanation<Pose>& now) const {\n",
          "if ({off}) return nullptr;"),
-    "the search ended where no loop is in doubt":
-        (CLIMB, "::none_in_doubt(const Explanation<Pose>& found) const {\n",
+    "the search ended where as good as all loops are true":
+        (CLIMB, "::explains_all(const Explanation<Pose>& found) const {\n",
          "if ({off}) return false;"),
     "scales settled anew":
         ("search/starts.hpp", "void settle_on(Climb<Pose>& climb, const std::vector<bool> accepted,\n"
@@ -183,7 +185,8 @@ def page(base, rows, cell_count):
              line_of("as they are", "", "", "", base, base, True)]
     for constant in CONSTANTS:
         model = constant.name in ("kScaleDeviation", "kScaleStep", "kLoopsBefore", "kTailDof",
-                                  "kReach", "kBiasDeviation", "kFalseFollowing")
+                                  "kReach", "kBiasDeviation", "kFalseFollowing",
+                                  "kFalseByChance")
         lines += [line_of(f"`{constant.name}`", constant.meaning, constant.value, f"{value:g}",
                           rows[f"{constant.name}={value:g}"], base, not model)
                   for value in constant.tried if f"{constant.name}={value:g}" in rows]

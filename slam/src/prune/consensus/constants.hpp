@@ -35,6 +35,10 @@ inline constexpr double kLoopsBefore = 1.0;
 /// false run than as a true one: true loops of a clean file agree with each other as well.
 inline constexpr double kFalseFollowing = 0.05;
 
+/// False loops that join their poses by chance, counted as seen before any is, against one that
+/// joins the right place and measures it wrong: few of a clean file's must be taken for that.
+inline constexpr double kFalseByChance = 100.0;
+
 /// Degrees of freedom of Student's t of what loops measure: heavy tails, of finite variance (Lange,
 /// Little and Taylor, Robust Statistical Modeling Using the t Distribution, 1989, section 5).
 inline constexpr double kTailDof = 4.0;

@@ -131,6 +131,14 @@ TYPED_TEST(NearDensityOf, FallsWithTheDistanceOfThePair) {
     }
     last = now;
   }
+  // A wild measurement of a pair that is near is as likely as its own tails say, and no likelier.
+  for (const double metres : {1e3, 1e4}) {
+    away[0] = metres;
+    const Pose wild = Pose::exp(away);
+    const auto decade = near.log_nearer(Pose::exp(10.0 * away), -10.0 * away, true, 1.0) -
+                        near.log_nearer(wild, -away, true, 1.0);
+    EXPECT_NEAR(decade, (1.0 + Pose::kDof) * std::numbers::ln10, 0.5);
+  }
   Random random(4);
   const Pose measured = Pose::exp(random_tangent<Pose>(random, 1.0));
   const Pose h = Pose::exp(random_tangent<Pose>(random, 1.0));

@@ -140,6 +140,30 @@ TYPED_TEST(ObjectiveOf, RisesByWhatALoopGains) {
       << "chance on the map with the loop, and on the one without";
 }
 
+// What is as accurate as the file says is no wrong measurement, however accurate others are found;
+// nor is it a sign that poses are near that a measurement is wild.
+TYPED_TEST(ObjectiveOf, TakesOnlyWhatIsOffForWrong) {
+  using Pose = TypeParam;
+  Random random(9);
+  const auto made = random_loop_graph<Pose>(random, 30, 10, 1.0);
+  const Objective<Pose> objective(made.graph, edge_roles(made.graph), 20);
+  const auto& stated = objective.stated();
+  const auto near = objective.near({stated.reduced.poses});
+  const auto log_place = [&](double deviations, double scale) {
+    Explanation<Pose> now;
+    now.scale.loops = scale;
+    const auto& covariance = stated.reduced.loops[0].covariance;
+    const typename Pose::Matrix root = Eigen::LLT<typename Pose::Matrix>(covariance).matrixL();
+    const Belief<Pose> belief{deviations * root.col(0), Pose::Matrix::Zero()};
+    return objective.log_place(now, stated, 0, belief, near);
+  };
+  EXPECT_LT(log_place(1.0, 1.0), -100.0);
+  EXPECT_EQ(log_place(1.0, 0.01), log_place(1.0, 1.0));
+  EXPECT_LT(log_place(20.0, 100.0), log_place(20.0, 1.0) - 10.0);
+  EXPECT_GT(log_place(30.0, 1.0), log_place(1e6, 1.0));
+  EXPECT_LT(log_place(1e6, 1.0), -20.0);
+}
+
 // Where all loops err as most do that is normal, of its residual under the other.
 TYPED_TEST(ObjectiveOf, PredictsALoopByTheOneBeforeIt) {
   using Pose = TypeParam;

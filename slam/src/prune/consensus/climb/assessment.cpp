@@ -11,7 +11,7 @@
 #include "prune/consensus/constants.hpp"
 #include "prune/consensus/log_odds.hpp"
 #include "prune/consensus/objective/run_density.hpp"
-#include "prune/consensus/runs/false_runs.hpp"
+#include "prune/consensus/runs/false_loops.hpp"
 
 namespace isotherm::slam::detail {
 namespace {
@@ -71,9 +71,8 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   find_peak(now);
   find_nearness(now);
   follow_runs(now);
-  const auto& follows = found_.log_follows;
   const double fit = objective_.fit(now, *found_.graph, estimate_, found_.near) +
-                     bias_->log_evidence() + std::reduce(follows.begin(), follows.end());
+                     bias_->log_evidence() + found_.false_loops.log_evidence;
   // The more redundancy there is, the narrower is the peak of the scales.
   now.redundancy = {};
   if (fit + objective_.log_scale_peak(now) < least) return false;
@@ -101,10 +100,10 @@ void Assessment<Pose>::follow_runs(const Explanation<Pose>& now) {
                                    found_.mixture, now.accepted, threads_);
   std::vector<double> log_led(now.accepted.size());
   for (std::size_t k = 0; k < log_led.size(); ++k) {
-    log_led[k] = found_.run_density[k] -
-                 std::max(objective_.log_mean_around(), log_alternative(static_cast<Index>(k)));
+    const double by_chance = log_alternative(static_cast<Index>(k));
+    log_led[k] = found_.run_density[k] - std::max(objective_.log_mean_around(), by_chance);
   }
-  found_.log_follows = log_follows(runs, now.accepted, log_led);
+  found_.false_loops = false_loops(runs, now.accepted, log_led, found_.log_place);
 }
 
 template <class Pose>
@@ -113,11 +112,26 @@ void Assessment<Pose>::find_nearness(const Explanation<Pose>& now) {
   const std::size_t accepted = now.accepted_count();
   const auto before = found_.near_of;
   const bool same = before && !is_much_more(accepted, *before) && !is_much_more(*before, accepted);
-  if (nearness_held_ && same) return;
-  found_.near = objective_.near(drawn_maps(now.scale));
+  if (nearness_held_ && same) return find_places(now, {estimate_.poses()});
+  const auto maps = drawn_maps(now.scale);
+  found_.near = objective_.near(maps);
   found_.near_of = accepted;
+  find_places(now, maps);
   nearness_found_.times += 1.0;
   if (pace_) pace_(NearnessFound::kWork);
+}
+
+// Of the same maps as what is near by chance. Parts that nothing joins lie anywhere.
+template <class Pose>
+void Assessment<Pose>::find_places(const Explanation<Pose>& now,
+                                   const std::vector<std::vector<Pose>>& maps) {
+  found_.log_place.assign(now.accepted.size(), 0.0);
+  parallel_for_each(found_.log_place.size(), threads_, [&](std::size_t k) {
+    const auto [first, second] = estimate_.parts(graph().loops[k]);
+    if (first != second) return;
+    found_.log_place[k] =
+        objective_.log_place(now, *found_.graph, static_cast<Index>(k), maps, found_.near);
+  });
 }
 
 template <class Pose>
@@ -351,9 +365,11 @@ Standing Assessment<Pose>::accepted_standing(const Explanation<Pose>& now, Index
   // Alone it would join parts that lie anywhere on the map.
   const double density = std::max(gain.log_density, -objective_.log_volume() - 0.5 * gain.chi2);
   const double nearer = objective_.log_nearer(loop, all.r);
-  return {.chi2 = gain.chi2,
-          .evidence = density + nearer - log_alternative(loop),
-          .weight = gain.weight};
+  return {
+      .chi2 = gain.chi2,
+      .evidence = density + nearer - log_alternative(loop) -
+                  log_alone(objective_.log_place(now, *found_.graph, loop, others, found_.near)),
+      .weight = gain.weight};
 }
 
 template <class Pose>
@@ -369,7 +385,7 @@ Standing Assessment<Pose>::other_standing(const Explanation<Pose>& now, Index lo
     standing.chi2 = gain.chi2;
     density = gain.log_density + objective_.log_nearer(loop, residual_with(others, Omega));
   }
-  standing.evidence = density - log_alternative(loop);
+  standing.evidence = density - log_alternative(loop) - log_alone(found_.log_place[loop]);
   return standing;
 }
 
@@ -416,7 +432,7 @@ double Assessment<Pose>::log_prior_odds(const Explanation<Pose>& now,
 
 template <class Pose>
 double Assessment<Pose>::log_false_run(std::span<const Index> loops) const {
-  const auto& follows = found_.log_follows;
+  const auto& follows = found_.false_loops.log_follows;
   double sum = 0.0;
   for (const Index k : loops) {
     sum += follows[k];

@@ -9,6 +9,7 @@
 #include "prune/consensus/objective/loop_gain.hpp"
 #include "prune/consensus/objective/objective.hpp"
 #include "prune/consensus/objective/standing.hpp"
+#include "prune/consensus/runs/false_loops.hpp"
 
 namespace isotherm::slam::detail {
 
@@ -69,7 +70,8 @@ class Assessment {
     std::vector<Matrix> held;
     std::shared_ptr<const std::vector<Belief<Pose>>> steps;  // of odometry's residuals, if any
     std::vector<double> run_density;                         // run_density()
-    std::vector<double> log_follows;                         // log_follows()
+    std::vector<double> log_place;                           // Objective::log_place()
+    FalseLoops false_loops;
   };
   const Findings& findings() const noexcept { return found_; }
 
@@ -121,7 +123,9 @@ class Assessment {
   }
 
   /// log of how much likelier true than false a loop is if the one before it in its run is true.
-  double log_led(Index loop) const { return found_.run_density[loop] - log_alternative(loop); }
+  double log_led(Index loop) const {
+    return found_.run_density[loop] - log_alternative(loop) - log_alone(found_.log_place[loop]);
+  }
 
  private:
   void rescale(const Shapes<Pose>& shapes);
@@ -130,6 +134,8 @@ class Assessment {
   void turn_by(const TurnBias<Pose>& bias, Explanation<Pose>& now);
   std::vector<std::vector<Pose>> drawn_maps(const CovarianceScale& scale) const;
   void find_nearness(const Explanation<Pose>& now);
+  void find_places(const Explanation<Pose>& now, const std::vector<std::vector<Pose>>& maps);
+  double log_alone(double log_place) const { return found_.false_loops.log_alone(log_place); }
   bool reweigh(Explanation<Pose>& now, bool anyway);
   Matrix information(const Explanation<Pose>& now, Index loop) const {
     return objective_.information(now, *found_.graph, loop);

@@ -112,8 +112,9 @@ void Climb<Pose>::stand_at(const Explanation<Pose>& found) {
 }
 
 template <class Pose>
-bool Climb<Pose>::none_in_doubt(const Explanation<Pose>& found) const {
-  return found.accepts_all() && found.least_odds() >= beyond_doubt();
+bool Climb<Pose>::explains_all(const Explanation<Pose>& found) const {
+  return found.expected_false() <=
+         options_.significance * static_cast<double>(found.accepted.size());
 }
 
 template <class Pose>
@@ -135,6 +136,7 @@ Explanation<Pose> Climb<Pose>::slipping(const Explanation<Pose>& found) {
 template <class Pose>
 Explanation<Pose> Climb<Pose>::refined(const Explanation<Pose>& found) {
   stand_at(found);
+  if (!to_the_last_ && !lay_out_anew()) return found;
   while (at_.learn_more_than(0.0, kWorthTelling)) {
   }
   return at_.now;
@@ -242,7 +244,7 @@ const Explanation<Pose>* Climb<Pose>::grow() {
 template <class Pose>
 bool Climb<Pose>::move() {
   if (shift() || at_.learn_more_than(0.0)) return true;
-  if (!to_the_last_ && at_.is_highest() && none_in_doubt(at_.now)) return false;
+  if (!to_the_last_ && at_.is_highest() && explains_all(at_.now)) return false;
   return explain_the_same_better() ||
          at_.once(Trial::undecided, [this] { return accept_undecided(); }) ||
          (at_.is_highest() && at_.once(Trial::doubted, [this] { return drop_doubted_run(); }));

@@ -46,15 +46,16 @@ class Climb {
   /// takes less time.
   void look_afar(bool looks) { looks_afar_ = looks; }
 
-  /// Whether climbs go on from where no loop is in doubt, to what explains the same loops better:
-  /// it changes no verdict.
+  /// Whether climbs go on from where as good as all loops are true, to what explains the same
+  /// better: it changes hardly a verdict.
   void go_to_the_last(bool goes) { to_the_last_ = goes; }
 
   /// See Assessment.
   void hold_nearness(bool held) { at_.assessment.hold_nearness(held); }
 
-  /// Whether all loops are true in what was found, each beyond doubt.
-  bool none_in_doubt(const Explanation<Pose>& found) const;
+  /// Whether as good as all loops are true in what was found: the share of verdicts that would be
+  /// wrong if all were kept is expected to be no more than was asked for.
+  bool explains_all(const Explanation<Pose>& found) const;
 
   /// Goes back to an explanation that was found.
   void stand_at(const Explanation<Pose>& found);
@@ -70,7 +71,8 @@ class Climb {
   /// for, but worse than what was found: of the last call of slipping().
   const std::vector<Explanation<Pose>>& doubted() const noexcept { return doubted_; }
 
-  /// The same loops at scales that are learnt to a tenth of what a move is worth.
+  /// The same loops on another map, where climbs did not go to the last, at scales that are learnt
+  /// to a tenth of what a move is worth.
   Explanation<Pose> refined(const Explanation<Pose>& found);
 
   /// What explains best that all loops are true, from what was found.

@@ -154,16 +154,17 @@ typename Pose::Tangent NearDensity<Pose>::offset(const Pose& T) const {
 }
 
 template <class Pose>
-double NearDensity<Pose>::log_nearer(const Pose& z, const Tangent& residual, bool forward) const {
+double NearDensity<Pose>::log_nearer(const Pose& z, const Tangent& residual, bool forward,
+                                     double tail_dof) const {
   const Pose h = z * Pose::exp(residual);
-  return forward ? log_at(h) - log_at(z) : log_at(h.inverse()) - log_at(z.inverse());
+  return log_at(forward ? h : h.inverse(), kTailDof) - log_at(forward ? z : z.inverse(), tail_dof);
 }
 
-// But for a constant.
+// Over its peak.
 template <class Pose>
-double NearDensity<Pose>::log_at(const Pose& T) const {
+double NearDensity<Pose>::log_at(const Pose& T, double tail_dof) const {
   const double square = offset(T).cwiseQuotient(deviation_).squaredNorm();
-  return -0.5 * (kTailDof + Pose::kDof) * std::log1p(square / kTailDof);
+  return -0.5 * (tail_dof + Pose::kDof) * std::log1p(square / tail_dof);
 }
 
 // Poses near each other are rare on a large map: they are looked for, not drawn, from every

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "prune/consensus/constants.hpp"
 #include "prune/consensus/estimate/reduced_graph.hpp"
 #include "prune/consensus/objective/span_class.hpp"
 #include "prune/consensus/pairs/loop_pair.hpp"
@@ -48,8 +49,11 @@ class NearDensity {
                          Index window) const;
 
   /// log f(h) - log f(z) of a loop that measured z and is left the residual log(z^-1 h) by the map
-  /// with it; `forward`: from the earlier vertex to the later one.
-  double log_nearer(const Pose& z, const typename Pose::Tangent& residual, bool forward) const;
+  /// with it; `forward`: from the earlier vertex to the later one. The tails of f(z) are those of
+  /// `tail_dof` degrees of freedom: no lighter than those of the residual, or else what is measured
+  /// wildly wrong were a sign that poses are near.
+  double log_nearer(const Pose& z, const typename Pose::Tangent& residual, bool forward,
+                    double tail_dof = kTailDof) const;
 
  private:
   using Tangent = typename Pose::Tangent;
@@ -73,7 +77,7 @@ class NearDensity {
   void fit(const ReducedGraph<Pose>& graph);
   void find_places(const ReducedGraph<Pose>& graph);
   Tangent offset(const Pose& T) const;
-  double log_at(const Pose& T) const;
+  double log_at(const Pose& T, double tail_dof) const;
   std::size_t class_of(std::size_t from, std::size_t to) const;
   void count_pairs(std::size_t anchor, std::array<double, kProposalClasses>& pairs) const;
   void count_near(const Places& on, std::size_t first, std::size_t stride, Count& count) const;

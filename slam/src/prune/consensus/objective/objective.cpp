@@ -7,7 +7,9 @@
 #include "matrices/decompositions.hpp"
 #include "prune/consensus/estimate/log_normal.hpp"
 #include "prune/consensus/estimate/map_volume.hpp"
+#include "prune/consensus/log_sum.hpp"
 #include "prune/consensus/objective/own_frames.hpp"
+#include "prune/consensus/objective/wrong_measurement.hpp"
 #include "prune/consensus/odometry/step_spread.hpp"
 
 namespace isotherm::slam::detail {
@@ -79,10 +81,36 @@ double Objective<Pose>::log_alternative(Index loop, const NearByClass& near,
 }
 
 template <class Pose>
-double Objective<Pose>::log_nearer(Index loop, const typename Pose::Tangent& r) const {
+double Objective<Pose>::log_nearer(Index loop, const typename Pose::Tangent& r,
+                                   double tail_dof) const {
   if (runs_.copied(loop)) return 0.0;
   const auto& link = stated_.reduced.loops[loop];
-  return near_.log_nearer(link.T_a_b, r, stated_.reduced.is_forward(link));
+  return near_.log_nearer(link.T_a_b, r, stated_.reduced.is_forward(link), tail_dof);
+}
+
+template <class Pose>
+double Objective<Pose>::log_place(const Explanation<Pose>& now, const ScaledGraph<Pose>& graph,
+                                  Index loop, const Belief<Pose>& belief,
+                                  const NearByClass& near) const {
+  if (runs_.copied(loop)) return 0.0;
+  const double scale = std::max(now.scale.loops, 1.0);  // what is as accurate as stated is right
+  const typename Pose::Matrix covariance = scale * graph.reduced.loops[loop].covariance;
+  return log_wrong<Pose>(belief.r, covariance, belief.P) + log_nearer(loop, belief.r, kWrongDof) -
+         near[proposal_class(graph.reduced, loop)];
+}
+
+template <class Pose>
+double Objective<Pose>::log_place(const Explanation<Pose>& now, const ScaledGraph<Pose>& graph,
+                                  Index loop, const std::vector<std::vector<Pose>>& maps,
+                                  const NearByClass& near) const {
+  const auto& link = graph.reduced.loops[loop];
+  double sum = kNever;
+  for (const auto& map : maps) {
+    const Belief<Pose> known{link.T_a_b.between(map[link.a].between(map[link.b])).log(),
+                             Pose::Matrix::Zero()};
+    sum = log_sum(sum, log_place(now, graph, loop, known, near));
+  }
+  return sum - std::log(static_cast<double>(maps.size()));
 }
 
 // Log densities of the accepted loops at the peak, and of their scales; how near they are.

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "prune/consensus/constants.hpp"
 #include "prune/consensus/estimate/estimate.hpp"
+#include "prune/consensus/log_odds.hpp"
 #include "prune/consensus/objective/error_scales.hpp"
 #include "prune/consensus/objective/near_density.hpp"
 #include "prune/consensus/objective/scale_prior.hpp"
@@ -52,11 +53,11 @@ struct Explanation {
 
   bool accepts_all() const { return accepted_count() == accepted.size(); }
 
-  /// log odds of the loop least likely to be true.
-  double least_odds() const {
-    double least = std::numeric_limits<double>::infinity();
-    for (const Standing& standing : standings) least = std::min(least, standing.log_odds);
-    return least;
+  /// Loops that are false, as expected.
+  double expected_false() const {
+    double sum = 0.0;
+    for (const Standing& standing : standings) sum += probability_of(-standing.log_odds);
+    return sum;
   }
 
   /// Whether any number measured is left to tell how accurate measurements are.
@@ -141,7 +142,15 @@ class Objective {
 
   /// What NearDensity::log_nearer() says of a loop that the map leaves the residual r; of a copy
   /// nothing, since what it measures was drawn with another.
-  double log_nearer(Index loop, const typename Pose::Tangent& r) const;
+  double log_nearer(Index loop, const typename Pose::Tangent& r, double tail_dof = kTailDof) const;
+
+  /// log of how much likelier than by chance a false loop of the right place is, where its ends lie
+  /// as `belief` has it, or as on one of these maps, `near` by chance: it is proposed as a true one
+  /// is, and measured as in log_wrong(). Of a copy 0, since its ends were proposed with another's.
+  double log_place(const Explanation<Pose>& now, const ScaledGraph<Pose>& graph, Index loop,
+                   const Belief<Pose>& belief, const NearByClass& near) const;
+  double log_place(const Explanation<Pose>& now, const ScaledGraph<Pose>& graph, Index loop,
+                   const std::vector<std::vector<Pose>>& maps, const NearByClass& near) const;
 
   /// See NearDensity::log_mean_around(): around loops that lead others.
   double log_mean_around() const noexcept { return log_mean_around_; }

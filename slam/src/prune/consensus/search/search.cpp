@@ -77,15 +77,6 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole,
   return standpoints;
 }
 
-// Whether the best does, and `to_the_last` leaves no loop in doubt.
-template <class Pose>
-bool explains_all(const Climb<Pose>& climb, const std::vector<Explanation<Pose>>& found,
-                  bool to_the_last) {
-  if (found.empty()) return false;
-  const auto& best = best_of(found);
-  return to_the_last ? climb.none_in_doubt(best) : best.accepts_all();
-}
-
 // Whether nothing was found that is likelier than that no loop is true.
 template <class Pose>
 bool is_astray(Climb<Pose>& climb, const std::vector<Explanation<Pose>>& found) {
@@ -93,6 +84,13 @@ bool is_astray(Climb<Pose>& climb, const std::vector<Explanation<Pose>>& found) 
   const auto* none = climb.nothing(least_that_tells(found));
   return none && std::ranges::all_of(
                      found, [&](const auto& peak) { return peak.evidence <= none->evidence; });
+}
+
+// The best that was found, for the same loops.
+template <class Pose>
+void refine(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
+  const auto learn = [&](const auto& best) { found.push_back(climb.refined(best)); };
+  unless_it_breaks_down(learn, best_of(found));
 }
 
 // The loops of the best that was found, explained anew.
@@ -130,7 +128,7 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   climb.look_afar(at_once);
   climb.go_to_the_last(to_the_last);
   std::vector<Explanation<Pose>> found;
-  const auto all_explained = [&] { return explains_all(climb, found, to_the_last); };
+  const auto all_explained = [&] { return !found.empty() && climb.explains_all(best_of(found)); };
   const auto try_from = [&](const auto&... start) {
     if (!all_explained()) found.push_back(climb.from(start...));
   };
@@ -145,15 +143,12 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   };
   if (astray()) climb_from_each_start(calibrate, try_start);
   if (calibrate && all_explained()) {
-    const auto refine = [&](const auto& best) { found.push_back(climb.refined(best)); };
-    if (to_the_last) unless_it_breaks_down(refine, best_of(found));
+    refine(climb, found);
   } else if (calibrate && !astray()) {
     try_slips(climb, found);
-    if (at_once) {
-      settle_anew(climb, found);
-      weigh_all(climb, found);
-    }
+    if (at_once) settle_anew(climb, found);
   }
+  if (calibrate && at_once && !astray()) weigh_all(climb, found);
   for (const StartScales& start : std::span(kStarts).subspan(kStartsAlways)) {
     if (!calibrate || !astray()) break;
     try_start(start);

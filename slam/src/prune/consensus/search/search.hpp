@@ -8,8 +8,7 @@ namespace isotherm::slam::detail {
 
 /// How far a search goes.
 struct SearchDepth {
-  /// Whether the search ends where no loop is in doubt, and else only with all that it knows to
-  /// try. Otherwise it ends as soon as all loops are accepted.
+  /// Whether climbs go on where as good as all is explained: see Climb::go_to_the_last().
   bool to_the_last = true;
   /// Whether a sample is as many of the loops as make one, where a tenth of them are too few.
   bool sample_soon = false;
