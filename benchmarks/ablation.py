@@ -66,7 +66,7 @@ MOVES = {
     "far starts": ("search/search.cpp", ": std::span(kStarts).subspan(kStartsAlways)) {\n",
                    "if ({off}) break;"),
     "the map laid out anew": (CLIMB, "::lay_out_anew() {\n", "if ({off}) return false;"),
-    "all loops true": (CLIMB, "::all_true(const Explanation<Pose>& found) {\n",
+    "all loops true": (CLIMB, "::all_true(const Explanation<Pose>& found, double least) {\n",
                        "if ({off}) return found;"),
     "loops weighed by the others": (CLIMB, "::weigh_by_others() {\n", "if ({off}) return false;"),
     "the look afar": (CLIMB, "::weigh_afar() {\n", "if ({off}) return false;"),

@@ -113,8 +113,14 @@ void Climb<Pose>::stand_at(const Explanation<Pose>& found) {
 
 template <class Pose>
 bool Climb<Pose>::explains_all(const Explanation<Pose>& found) const {
-  return found.expected_false() <=
-         options_.significance * static_cast<double>(found.accepted.size());
+  return are_decided(found, std::vector<bool>(found.accepted.size(), true));
+}
+
+template <class Pose>
+bool Climb<Pose>::are_decided(const Explanation<Pose>& found,
+                              const std::vector<bool>& are_true) const {
+  return found.expected_wrong(are_true) <=
+         options_.significance * static_cast<double>(are_true.size());
 }
 
 template <class Pose>
@@ -143,9 +149,11 @@ Explanation<Pose> Climb<Pose>::refined(const Explanation<Pose>& found) {
 }
 
 template <class Pose>
-Explanation<Pose> Climb<Pose>::all_true(const Explanation<Pose>& found) {
+Explanation<Pose> Climb<Pose>::all_true(const Explanation<Pose>& found, double least) {
   stand_at(found);
-  return settle(std::vector<bool>(found.accepted.size(), true));
+  const auto accept_all = [](auto& now) { now.accepted.assign(now.accepted.size(), true); };
+  const TrialTerms terms{.gain = least - found.evidence, .learning = true};
+  return at_.try_with(accept_all, terms) ? settle(at_.now.accepted) : found;
 }
 
 // Grows to them first, the most certain before the rest, so that poses come near.
@@ -244,7 +252,7 @@ const Explanation<Pose>* Climb<Pose>::grow() {
 template <class Pose>
 bool Climb<Pose>::move() {
   if (shift() || at_.learn_more_than(0.0)) return true;
-  if (!to_the_last_ && at_.is_highest() && explains_all(at_.now)) return false;
+  if (!to_the_last_ && at_.is_highest() && are_decided(at_.now, at_.now.accepted)) return false;
   return explain_the_same_better() ||
          at_.once(Trial::undecided, [this] { return accept_undecided(); }) ||
          (at_.is_highest() && at_.once(Trial::doubted, [this] { return drop_doubted_run(); }));

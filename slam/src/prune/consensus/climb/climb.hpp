@@ -46,8 +46,8 @@ class Climb {
   /// takes less time.
   void look_afar(bool looks) { looks_afar_ = looks; }
 
-  /// Whether climbs go on from where as good as all loops are true, to what explains the same
-  /// better: it changes hardly a verdict.
+  /// Whether climbs go on from where as few verdicts are expected to be wrong as may be, to what
+  /// explains the same better.
   void go_to_the_last(bool goes) { to_the_last_ = goes; }
 
   /// See Assessment.
@@ -75,8 +75,9 @@ class Climb {
   /// to a tenth of what a move is worth.
   Explanation<Pose> refined(const Explanation<Pose>& found);
 
-  /// What explains best that all loops are true, from what was found.
-  Explanation<Pose> all_true(const Explanation<Pose>& found);
+  /// What explains best that all loops are true, from what was found; that where it cannot come
+  /// near `least`.
+  Explanation<Pose> all_true(const Explanation<Pose>& found, double least);
 
   /// What explains best that exactly these loops are true, from `start`.
   Explanation<Pose> settled_on(const std::vector<bool>& accepted, const CovarianceScale& start);
@@ -97,6 +98,8 @@ class Climb {
 
   // Twice the log odds that a verdict takes.
   double beyond_doubt() const { return 2.0 * log_odds_of(1.0 - options_.significance); }
+  // Whether as few loops as verdicts may be wrong are not what is taken for true or false.
+  bool are_decided(const Explanation<Pose>& found, const std::vector<bool>& are_true) const;
   Explanation<Pose> none_at(const CovarianceScale& scale) const;
   void start(Explanation<Pose> explanation);
   void stand_on(Standpoint<Pose> standpoint);

@@ -53,10 +53,12 @@ struct Explanation {
 
   bool accepts_all() const { return accepted_count() == accepted.size(); }
 
-  /// Loops that are false, as expected.
-  double expected_false() const {
+  /// Loops that are not what is taken for true or false here, as expected.
+  double expected_wrong(const std::vector<bool>& are_true) const {
     double sum = 0.0;
-    for (const Standing& standing : standings) sum += probability_of(-standing.log_odds);
+    for (std::size_t k = 0; k < are_true.size(); ++k) {
+      sum += probability_of(are_true[k] ? -standings[k].log_odds : standings[k].log_odds);
+    }
     return sum;
   }
 

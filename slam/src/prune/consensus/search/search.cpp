@@ -113,7 +113,8 @@ void try_slips(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
 template <class Pose>
 void weigh_all(Climb<Pose>& climb, std::vector<Explanation<Pose>>& found) {
   if (best_of(found).accepts_all()) return;
-  const auto accept = [&](const auto& best) { found.push_back(climb.all_true(best)); };
+  const double least = least_that_tells(found);
+  const auto accept = [&](const auto& best) { found.push_back(climb.all_true(best, least)); };
   unless_it_breaks_down(accept, best_of(found));
 }
 
@@ -142,13 +143,14 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
     if (start.unknown) unless_it_breaks_down(climb_from, false);
   };
   if (astray()) climb_from_each_start(calibrate, try_start);
-  if (calibrate && all_explained()) {
+  if (calibrate && !astray()) {
+    if (!all_explained()) {
+      try_slips(climb, found);
+      if (at_once) settle_anew(climb, found);
+    }
     refine(climb, found);
-  } else if (calibrate && !astray()) {
-    try_slips(climb, found);
-    if (at_once) settle_anew(climb, found);
+    if (at_once) weigh_all(climb, found);
   }
-  if (calibrate && at_once && !astray()) weigh_all(climb, found);
   for (const StartScales& start : std::span(kStarts).subspan(kStartsAlways)) {
     if (!calibrate || !astray()) break;
     try_start(start);
