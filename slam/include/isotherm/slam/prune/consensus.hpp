@@ -23,7 +23,8 @@ struct ConsensusOptions {
 
   /// A loop is pruned if it is true with a probability below this one, and kept if it is false
   /// with a probability below it; in (0, 0.5). Where fewer than five are found true none
-  /// is pruned, nor one whose ends nothing else joins.
+  /// is pruned, nor one whose ends nothing else joins. The search ends early where no more than
+  /// this share of the loops is expected to be false.
   double significance = 0.01;
   /// Loops whose ends lie within this many vertices of each other, at both ends, can be one
   /// run, which is accepted as a whole; > 0.
