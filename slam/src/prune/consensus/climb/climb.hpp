@@ -98,7 +98,8 @@ class Climb {
 
   // Twice the log odds that a verdict takes.
   double beyond_doubt() const { return 2.0 * log_odds_of(1.0 - options_.significance); }
-  // Whether as few loops as verdicts may be wrong are not what is taken for true or false.
+  // Whether no more loops are expected not to be what is taken for true or false than verdicts may
+  // be wrong.
   bool are_decided(const Explanation<Pose>& found, const std::vector<bool>& are_true) const;
   Explanation<Pose> none_at(const CovarianceScale& scale) const;
   void start(Explanation<Pose> explanation);

@@ -191,7 +191,7 @@ class Objective {
   /// log of the volume of relative poses that the map of odometry allows.
   double log_volume() const noexcept { return log_volume_; }
 
-  /// The evidence, but for what log_scale_peak(), BiasFit::log_evidence() and log_follows() say.
+  /// The evidence, but for what log_scale_peak(), BiasFit::log_evidence() and false_loops() say.
   /// `estimate` must have settled on the explanation's loops, scales and weights, on `graph`.
   double fit(const Explanation<Pose>& explanation, const ScaledGraph<Pose>& graph,
              const Estimate<Pose>& estimate, const NearByClass& near) const;
