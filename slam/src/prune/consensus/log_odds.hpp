@@ -5,6 +5,9 @@
 
 namespace isotherm::slam::detail {
 
+/// Nats beyond the last digit of a double: what is so much less likely changes no probability.
+inline constexpr double kNoDigit = 40.0;
+
 inline double log_odds_of(double probability) {
   return std::log(probability / (1.0 - probability));
 }

@@ -117,6 +117,35 @@ TYPED_TEST(AssessmentOf, WeighsLoopsAsTheOthersSay) {
   }
 }
 
+// One of them by too little for a bound to tell.
+TYPED_TEST(AssessmentOf, RefutesByBoundsWhatIsRefutedExactly) {
+  using Pose = TypeParam;
+  auto graph = this->graph_;
+  const EdgeRoles roles = edge_roles(graph);
+  for (const std::size_t k : {30, 33, 36, 39}) {
+    auto& T = graph.constraints[roles.candidates[k]].T_from_to;
+    T = T * Pose::exp(Pose::Tangent::Constant(k == 30 ? 0.03 : 0.5));
+  }
+  const Objective<Pose> objective(graph, roles, 1);
+  Assessment<Pose> assessment(objective);
+  Explanation<Pose> now{.accepted = std::vector<bool>(this->kLoops, true)};
+  for (const std::size_t k : {30, 33, 36, 39}) now.accepted[k] = false;
+  now.weights.resize(this->kLoops);
+  assessment.assess(now);
+  for (const std::size_t k : {30, 33, 36, 39}) {
+    const auto& link = assessment.graph().loops[k];
+    const auto exact = assessment.estimate().residual_covariances({&link})[0];
+    const auto gain = loop_gain<Pose>(
+        {assessment.belief(static_cast<Index>(k)).r, exact}, {link.covariance, link.covariance},
+        assessment.findings().mixture, objective.scale_deviation(now.redundancy));
+    EXPECT_LE(now.standings[k].chi2, gain.chi2 * (1.0 + 1e-9)) << k;
+    EXPECT_EQ(now.standings[k].evidence < -kNoDigit, k != 30) << k;
+    EXPECT_EQ(gain.log_density - assessment.log_alternative(static_cast<Index>(k)) < -kNoDigit,
+              k != 30)
+        << k;
+  }
+}
+
 // Weights and shares take turns, each the best given the other.
 TYPED_TEST(AssessmentOf, FindsMoreEvidenceEachTime) {
   using Pose = TypeParam;

@@ -176,6 +176,31 @@ TYPED_TEST(EstimateOf, CovariancesAreThoseOfTheWholeGraph) {
   }
 }
 
+// However the ends of a link are correlated.
+TYPED_TEST(EstimateOf, BoundsAreNoLessThanCovariances) {
+  using Pose = TypeParam;
+  Random random(18);
+  const auto made = random_loop_graph<Pose>(random, 60, 20, 1.0, 1e4);
+  const auto reduced = reduce(made.graph, edge_roles(made.graph));
+  std::vector<bool> accepted(reduced.loops.size(), true);
+  accepted[2] = accepted[5] = false;
+  Estimate<Pose> estimate(reduced);
+  estimate.update(accepted, {}, 10);
+  typename Estimate<Pose>::Links steps;
+  typename Estimate<Pose>::Links loops;
+  for (const auto& step : reduced.steps) steps.push_back(&step);
+  for (const auto& loop : reduced.loops) loops.push_back(&loop);
+  const auto exact = estimate.residual_covariances(loops);
+  const auto of_steps = estimate.residual_covariances(steps);
+  const auto both = estimate.residual_covariances(steps, 1, loops);
+  for (std::size_t k = 0; k < steps.size(); ++k) EXPECT_EQ(both[k], of_steps[k]);
+  for (std::size_t k = 0; k < loops.size(); ++k) {
+    const typename Pose::Matrix more = both[steps.size() + k] - exact[k];
+    const Eigen::SelfAdjointEigenSolver<typename Pose::Matrix> axes(more);
+    EXPECT_GT(axes.eigenvalues().minCoeff(), -1e-9 * exact[k].norm()) << k;
+  }
+}
+
 TYPED_TEST(EstimateOf, LoopsMovePartsTogether) {
   using Pose = TypeParam;
   Random random(13);
@@ -222,6 +247,8 @@ TYPED_TEST(EstimateOf, IsLaidOutAnewWhereverPosesAre) {
     EXPECT_LT((turned.residual(loop) - estimate.residual(loop)).norm(), 1e-6);
   }
   EXPECT_EQ(turned.layout().component, estimate.layout().component);
+  EXPECT_FALSE(turned.differs_from(estimate.layout(), scale));
+  EXPECT_TRUE(turned.differs_from(layout, scale));
 }
 
 // Where the loops stay the same, only values are computed anew.

@@ -49,7 +49,8 @@ void visit_fields(Options& options, Visitor&& visit) {
   visit("max_rounds", options.max_rounds, "moves at given scales at most", closed(1, 1e6));
 }
 
-/// What is known of one candidate, given the verdicts on all others.
+/// What is known of one candidate, given the verdicts on all others. Of one that no run joins, and
+/// that is false beyond the last digit of a probability, chi2 may be more and the evidence less.
 struct ConsensusDetail {
   double probability = 0.5;  ///< of being true
   double evidence = 0.0;     ///< log of how much likelier true than false, without the prior

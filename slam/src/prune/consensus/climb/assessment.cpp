@@ -68,6 +68,19 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   rescale(now.shapes);
   found_.mixture = now.mixture();
   find_peak(now);
+  return weigh_peak(now, least);
+}
+
+template <class Pose>
+bool Assessment<Pose>::assess_on_another_map(Explanation<Pose>& now, double least) {
+  estimate_.weigh_loops(accepted_information(now));
+  estimate_.lay_out_anew(now.accepted, now.scale);
+  find_peak(now);
+  return estimate_.differs_from(now.layout, now.scale) && weigh_peak(now, least);
+}
+
+template <class Pose>
+bool Assessment<Pose>::weigh_peak(Explanation<Pose>& now, double least) {
   find_nearness(now);
   follow_runs(now);
   const double fit = objective_.fit(now, *found_.graph, estimate_, found_.near) +
@@ -81,14 +94,9 @@ bool Assessment<Pose>::assess(Explanation<Pose>& now, double least) {
   if (pace_) pace_(kCovarianceWork * estimate_.work());
   now.evidence = fit + objective_.log_scale_peak(now);
   if (now.evidence < least) return false;
+  predict_others(now);
   weigh(now);
   return true;
-}
-
-template <class Pose>
-void Assessment<Pose>::lay_out_anew(const Explanation<Pose>& now) {
-  estimate_.weigh_loops(accepted_information(now));
-  estimate_.lay_out_anew(now.accepted, now.scale);
 }
 
 // What each loop of a run is likely to measure by the one before, and what that says of false ones.
@@ -261,23 +269,58 @@ typename Pose::Matrix Assessment<Pose>::uncertainty(const Explanation<Pose>& now
   return share >= 0.0 && share <= Pose::kDof ? left : Matrix(Omega.inverse());
 }
 
-// Covariances of the loops whose ends are joined. Where nothing is accepted and odometry does not
-// meet itself they have been composed already.
+// Covariances of odometry's steps and of the accepted loops, which tell how accurate both are, and
+// bounds of the others' whose ends are joined. Where nothing is accepted and odometry does not meet
+// itself they have been composed already.
 template <class Pose>
 void Assessment<Pose>::predict(Explanation<Pose>& now) {
   const bool alone = now.accepted_count() == 0 && found_.graph->is_forest();
   now.standings.resize(now.accepted.size());
-  std::vector<Index> solved;
+  bounded_.clear();
+  std::vector<Index> accepted;
   std::vector<Index> composed;
   for (Index loop = 0; loop < static_cast<Index>(now.accepted.size()); ++loop) {
     const auto [first, second] = estimate_.parts(graph().loops[loop]);
-    (!alone && first == second ? solved : composed).push_back(loop);
+    auto& joined = now.accepted[loop] ? accepted : bounded_;
+    (alone || first != second ? composed : joined).push_back(loop);
   }
   parallel_for_each(composed.size(), threads_, [&](std::size_t i) {
     believe(composed[i], odometry_says(composed[i], now.scale.odometry));
   });
-  solve(now, solved, !alone);
+  found_.steps = nullptr;
+  now.odometry_cost.setZero();
+  if (!alone) solve(now, accepted);
   found_.held = accepted_information(now);
+}
+
+// Of the loops that are bounded those that are not refuted however their ends are correlated.
+template <class Pose>
+void Assessment<Pose>::predict_others(Explanation<Pose>& now) {
+  refuted_.assign(now.accepted.size(), 0);
+  parallel_for_each(bounded_.size(), threads_, [&](std::size_t i) { refute(now, bounded_[i]); });
+  std::erase_if(bounded_, [this](Index loop) { return refuted_[loop] != 0; });
+  const auto covariances = estimate_.residual_covariances(links_of(bounded_), threads_);
+  for (std::size_t i = 0; i < bounded_.size(); ++i) believe(bounded_[i], covariances[i]);
+}
+
+// If it can be, by itself: what of a run is likely the others tell. Of a smaller covariance a
+// density may be higher by the ratio of the volumes at most.
+template <class Pose>
+void Assessment<Pose>::refute(Explanation<Pose>& now, Index loop) {
+  if (!objective_.runs().by_itself(loop)) return;
+  Standing standing = other_standing(now, loop);
+  const auto most = detail::predict<Pose>(belief(loop), own_error(loop).learnt);
+  standing.evidence += 0.5 * (most.variance.array() / found_.mixture.scale).log1p().sum();
+  if (standing.evidence >= -kNoDigit) return;
+  now.standings[loop] = standing;
+  refuted_[loop] = 1;
+}
+
+template <class Pose>
+typename Estimate<Pose>::Links Assessment<Pose>::links_of(const std::vector<Index>& loops) const {
+  typename Estimate<Pose>::Links links;
+  for (const Index k : loops) links.push_back(&graph().loops[k]);
+  return links;
 }
 
 // By the covariance of its residual where odometry's bias is known.
@@ -295,26 +338,24 @@ typename Pose::Matrix Assessment<Pose>::odometry_says(Index loop, double scale) 
   return scale * J * graph().odometry_covariance(graph().loops[loop]) * J.transpose();
 }
 
-// Covariances of these loops, and unless odometry is on its own what it tells of its accuracy.
+// Those of these loops, bounds, and what odometry tells of its accuracy.
 template <class Pose>
-void Assessment<Pose>::solve(Explanation<Pose>& now, const std::vector<Index>& loops,
-                             bool odometry) {
-  std::vector<const Link<Pose>*> links;
-  for (const Index k : loops) links.push_back(&graph().loops[k]);
-  if (odometry) {
-    for (const auto& step : graph().steps) links.push_back(&step);
+void Assessment<Pose>::solve(Explanation<Pose>& now, const std::vector<Index>& accepted) {
+  auto links = links_of(accepted);
+  for (const auto& step : graph().steps) links.push_back(&step);
+  const auto covariances = estimate_.residual_covariances(links, threads_, links_of(bounded_));
+  for (std::size_t i = 0; i < accepted.size(); ++i) believe(accepted[i], covariances[i]);
+  for (std::size_t i = 0; i < bounded_.size(); ++i) {
+    believe(bounded_[i], covariances[links.size() + i]);
   }
-  const auto covariances = estimate_.residual_covariances(links, threads_);
-  auto steps = std::make_shared<std::vector<Belief<Pose>>>(covariances.size() - loops.size());
-  parallel_for_each(covariances.size(), threads_, [&](std::size_t i) {
-    if (i < loops.size()) return believe(loops[i], covariances[i]);
-    const std::size_t k = i - loops.size();
+  auto steps = std::make_shared<std::vector<Belief<Pose>>>(graph().steps.size());
+  parallel_for_each(steps->size(), threads_, [&](std::size_t k) {
     const auto more = bias_->of_step(k);
-    (*steps)[k] = {estimate_.residual(*links[i]) + more.r, covariances[i] + more.P};
+    (*steps)[k] = {estimate_.residual(graph().steps[k]) + more.r,
+                   covariances[accepted.size() + k] + more.P};
   });
-  OdometryComponent<Pose> told;
-  if (odometry) told = objective_.odometry(now, *found_.graph, *steps, threads_);
-  found_.steps = odometry ? std::move(steps) : nullptr;
+  const auto told = objective_.odometry(now, *found_.graph, *steps, threads_);
+  found_.steps = std::move(steps);
   now.odometry_cost = told.cost;
   now.redundancy.odometry = told.redundancy;
 }
@@ -329,6 +370,7 @@ template <class Pose>
 void Assessment<Pose>::weigh(Explanation<Pose>& now) {
   parallel_for_each(now.accepted.size(), threads_, [&](std::size_t k) {
     const auto loop = static_cast<Index>(k);
+    if (refuted_[k] != 0) return;
     now.standings[k] = now.accepted[k] ? accepted_standing(now, loop) : other_standing(now, loop);
   });
   add_prior(now);

@@ -57,6 +57,10 @@ class Assessment {
   /// @throws NumericalError if the normal equations break down
   bool assess(Explanation<Pose>& now, double least = -std::numeric_limits<double>::infinity());
 
+  /// The same from a map that does not depend on the one where `now` was assessed; gives up, too,
+  /// where that leads back to it.
+  bool assess_on_another_map(Explanation<Pose>& now, double least);
+
   /// What the next assessment starts from, beside the explanation.
   struct Findings {
     Shapes<Pose> shapes;
@@ -80,9 +84,6 @@ class Assessment {
 
   /// The next assessment starts from this layout.
   void stand_on(const typename Estimate<Pose>::Layout& layout) { estimate_.restore(layout); }
-
-  /// The next assessment starts from a map that does not depend on the present one.
-  void lay_out_anew(const Explanation<Pose>& now);
 
   const Objective<Pose>& objective() const noexcept { return objective_; }
 
@@ -130,6 +131,7 @@ class Assessment {
  private:
   void rescale(const Shapes<Pose>& shapes);
   void find_peak(Explanation<Pose>& now);
+  bool weigh_peak(Explanation<Pose>& now, double least);
   void settle(Explanation<Pose>& now);
   void turn_by(const TurnBias<Pose>& bias, Explanation<Pose>& now);
   std::vector<std::vector<Pose>> drawn_maps(const CovarianceScale& scale) const;
@@ -150,7 +152,10 @@ class Assessment {
   void predict(Explanation<Pose>& now);
   Matrix odometry_says(Index loop, double scale) const;
   void believe(Index loop, const Matrix& covariance);
-  void solve(Explanation<Pose>& now, const std::vector<Index>& loops, bool odometry);
+  void solve(Explanation<Pose>& now, const std::vector<Index>& accepted);
+  void predict_others(Explanation<Pose>& now);
+  void refute(Explanation<Pose>& now, Index loop);
+  typename Estimate<Pose>::Links links_of(const std::vector<Index>& loops) const;
   void follow_runs(const Explanation<Pose>& now);
   void weigh(Explanation<Pose>& now);
   void find_redundancy(Explanation<Pose>& now) const;
@@ -164,6 +169,8 @@ class Assessment {
   Findings found_;
   Estimate<Pose> estimate_;
   std::optional<BiasFit<Pose>> bias_;  // at the peak
+  std::vector<Index> bounded_;         // loops of whose covariances only bounds are known
+  std::vector<char> refuted_;          // one flag a loop: by such a bound
   typename Estimate<Pose>::Layout odometry_;
   bool nearness_held_ = false;
   bool scales_known_ = false;

@@ -103,12 +103,21 @@ Explanation<Pose> Climb<Pose>::resume(Standpoint<Pose> standpoint) {
 
 template <class Pose>
 void Climb<Pose>::stand_at(const Explanation<Pose>& found) {
-  const bool there = at_.now.accepted == found.accepted && at_.now.evidence == found.evidence &&
-                     at_.now.scale == found.scale && at_.now.shapes == found.shapes;
-  if (there && at_.assessment.estimate().is_factorised()) return;
-  at_.now = found;
-  at_.assessment.restore(at_.now, at_.assessment.findings());
-  at_.assess();
+  if (!is_at(found) || !at_.assessment.estimate().is_factorised()) {
+    stand_on({found, at_.assessment.findings()});
+  }
+}
+
+template <class Pose>
+bool Climb<Pose>::is_at(const Explanation<Pose>& found) const {
+  return at_.now.accepted == found.accepted && at_.now.evidence == found.evidence &&
+         at_.now.scale == found.scale && at_.now.shapes == found.shapes;
+}
+
+template <class Pose>
+void Climb<Pose>::begin_at(const Explanation<Pose>& found) {
+  if (!is_at(found)) return stand_on({found, at_.assessment.findings()});
+  at_.begin();
 }
 
 template <class Pose>
@@ -129,7 +138,7 @@ Explanation<Pose> Climb<Pose>::slipping(const Explanation<Pose>& found) {
   const bool hidden = any_is_worse(found);
   const bool rejected = looks_afar_ && !found.accepts_all();
   if (!hidden && !rejected) return found;
-  stand_on({found, at_.assessment.findings()});
+  begin_at(found);
   SlipTrials<Pose> trials(
       at_, {.shift = [this] { return shift(); }, .settle = [this] { settle(at_.now.accepted); }},
       log_odds_of(1.0 - options_.significance));
@@ -141,8 +150,8 @@ Explanation<Pose> Climb<Pose>::slipping(const Explanation<Pose>& found) {
 
 template <class Pose>
 Explanation<Pose> Climb<Pose>::refined(const Explanation<Pose>& found) {
-  stand_at(found);
-  if (!to_the_last_ && !lay_out_anew()) return found;
+  begin_at(found);
+  if (!to_the_last_ && !at_.try_another_map()) return found;
   while (at_.learn_more_than(0.0, kWorthTelling)) {
   }
   return at_.now;
@@ -150,7 +159,7 @@ Explanation<Pose> Climb<Pose>::refined(const Explanation<Pose>& found) {
 
 template <class Pose>
 Explanation<Pose> Climb<Pose>::all_true(const Explanation<Pose>& found, double least) {
-  stand_at(found);
+  begin_at(found);
   const auto accept_all = [](auto& now) { now.accepted.assign(now.accepted.size(), true); };
   const TrialTerms terms{.gain = least - found.evidence, .learning = true};
   return at_.try_with(accept_all, terms) ? settle(at_.now.accepted) : found;
@@ -188,18 +197,21 @@ const Explanation<Pose>& Climb<Pose>::settle(const std::vector<bool>& accepted) 
 
 template <class Pose>
 const Explanation<Pose>* Climb<Pose>::nothing(double least) {
-  if (!nothing_ && least < nothing_below_) {
-    at_.now = none_at({});
-    std::tie(at_.now.scale.odometry, at_.now.shapes.odometry) =
-        scale_and_shape<typename Pose::Tangent>(objective_.most_odometry().cwiseMin(0.0));
-    at_.assessment.start_over();
-    if (at_.assessment.assess(at_.now, least)) {
-      nothing_ = at_.now;
-    } else {
-      nothing_below_ = least;
-    }
-  }
+  if (!nothing_ && least < nothing_below_) at_.aside([&] { find_nothing(least); });
   return nothing_ && nothing_->evidence >= least ? &*nothing_ : nullptr;
+}
+
+template <class Pose>
+void Climb<Pose>::find_nothing(double least) {
+  at_.now = none_at({});
+  std::tie(at_.now.scale.odometry, at_.now.shapes.odometry) =
+      scale_and_shape<typename Pose::Tangent>(objective_.most_odometry().cwiseMin(0.0));
+  at_.assessment.start_over();
+  if (at_.assessment.assess(at_.now, least)) {
+    nothing_ = at_.now;
+  } else {
+    nothing_below_ = least;
+  }
 }
 
 template <class Pose>
@@ -215,6 +227,7 @@ template <class Pose>
 void Climb<Pose>::start(Explanation<Pose> explanation) {
   at_.now = std::move(explanation);
   at_.assessment.start_over();
+  at_.assessment.assess(at_.now);
   at_.begin();
 }
 
@@ -222,6 +235,7 @@ template <class Pose>
 void Climb<Pose>::stand_on(Standpoint<Pose> standpoint) {
   at_.now = std::move(standpoint.explanation);
   at_.assessment.restore(at_.now, std::move(standpoint.found));
+  at_.assessment.assess(at_.now);
   at_.begin();
 }
 
@@ -280,12 +294,6 @@ bool Climb<Pose>::shift() {
   return true;
 }
 
-// Poses end at the nearest minimum to where odometry and the first accepted loops led.
-template <class Pose>
-bool Climb<Pose>::lay_out_anew() {
-  return at_.try_with([this](auto& now) { at_.assessment.lay_out_anew(now); });
-}
-
 // A loop that is taken for accurate draws the map to itself, and looks accurate there: each is as
 // accurate as the others say.
 template <class Pose>
@@ -318,7 +326,7 @@ bool Climb<Pose>::weigh_afar() {
 // By another map, other weights, slips or scales.
 template <class Pose>
 bool Climb<Pose>::explain_the_same_better() {
-  return at_.once(Trial::map, [this] { return lay_out_anew(); }) ||
+  return at_.once(Trial::map, [this] { return at_.try_another_map(); }) ||
          at_.once(Trial::weights_by_others, [this] { return weigh_by_others(); }) ||
          at_.once(Trial::afar, [this] { return weigh_afar(); }) || at_.find_slips();
 }

@@ -101,6 +101,9 @@ class Climb {
   // Whether no more loops are expected not to be what is taken for true or false than verdicts may
   // be wrong.
   bool are_decided(const Explanation<Pose>& found, const std::vector<bool>& are_true) const;
+  bool is_at(const Explanation<Pose>& found) const;
+  void begin_at(const Explanation<Pose>& found);
+  void find_nothing(double least);
   Explanation<Pose> none_at(const CovarianceScale& scale) const;
   void start(Explanation<Pose> explanation);
   void stand_on(Standpoint<Pose> standpoint);
@@ -118,7 +121,6 @@ class Climb {
   Group next_batch() const;
   void accept(const Selection& loops);
   bool explain_the_same_better();
-  bool lay_out_anew();
   bool weigh_by_others();
   bool weigh_afar();
   bool accept_undecided();

@@ -18,13 +18,17 @@ void Position<Pose>::begin() {
   learnt_from_ = 0;
   failed_ = {};
   promised_ = 0.0;
-  assessment.assess(now);
   best = now;
 }
 
 template <class Pose>
 bool Position<Pose>::assess(double least) {
-  if (!assessment.assess(now, least)) return false;
+  return note(assessment.assess(now, least));
+}
+
+template <class Pose>
+bool Position<Pose>::note(bool assessed) {
+  if (!assessed) return false;
   failed_ = {};
   promised_ = 0.0;
   if (now.evidence > best.evidence) best = now;
@@ -58,8 +62,15 @@ std::vector<bool> Position<Pose>::open() const {
 }
 
 template <class Pose>
+void Position<Pose>::aside(const std::function<void()>& moves) {
+  const Place before = here();
+  moves();
+  go_back(before);
+}
+
+template <class Pose>
 bool Position<Pose>::all_or_nothing(const std::function<bool()>& moves) {
-  const Place before{now, assessment.findings(), failed_, promised_, dropped};
+  const Place before = here();
   bool better = false;
   try {
     better = moves();
@@ -88,6 +99,12 @@ void Position<Pose>::go_back(const Place& place) {
   failed_ = place.failed;
   promised_ = place.promised;
   dropped = place.dropped;
+}
+
+template <class Pose>
+bool Position<Pose>::try_another_map() {
+  const double least = now.evidence + kBetter;
+  return all_or_nothing([&] { return note(assessment.assess_on_another_map(now, least)); });
 }
 
 template <class Pose>

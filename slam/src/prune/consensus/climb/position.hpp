@@ -52,7 +52,7 @@ class Position {
   /// `objective` must outlive this object.
   Position(const Objective<Pose>& objective, bool calibrate, Pace pace, int threads);
 
-  /// From `now`.
+  /// From `now`, which has been assessed.
   void begin();
 
   /// Whether the evidence reaches `least`.
@@ -61,12 +61,19 @@ class Position {
   /// Unless it failed here before.
   bool once(Trial trial, const std::function<bool()>& move);
 
+  /// Goes back to where it stood then.
+  void aside(const std::function<void()>& moves);
+
   /// Whether the moves succeed, or else nothing changes. Scales at which the normal equations break
   /// down explain nothing.
   bool all_or_nothing(const std::function<bool()>& moves);
 
   /// Whether that gains as much, or else nothing changes.
   bool try_with(const Change& change, TrialTerms terms = {});
+
+  /// The same on a map that does not depend on the present one: poses end at the nearest minimum to
+  /// where odometry and the first accepted loops led.
+  bool try_another_map();
 
   /// Whether nothing higher was found, on the way or by an earlier climb.
   bool is_highest() const {
@@ -112,9 +119,12 @@ class Position {
     std::vector<bool> dropped;
   };
 
+  // Whether it was assessed to the end.
+  bool note(bool assessed);
   // Whether the scales that can be learnt from here by more than that explain the same loops
   // better.
   bool outdoes(double evidence, double known);
+  Place here() const { return {now, assessment.findings(), failed_, promised_, dropped}; }
   void go_back(const Place& place);
   void slip(std::span<const SlipChange> changes);
 

@@ -158,6 +158,23 @@ void Estimate<Pose>::lay_out_anew(const std::vector<bool>& accepted, const Covar
   restore({initial_poses(used, {}, Initialization::chordal), component_});
 }
 
+template <class Pose>
+bool Estimate<Pose>::differs_from(const Layout& layout, const CovarianceScale& scale) const {
+  double sum = 0.0;
+  double count = 0.0;
+  const auto compare = [&](const Link<Pose>& link, const Matrix& information) {
+    const Pose before = layout.poses[link.a].between(layout.poses[link.b]);
+    const Tangent d = before.between(poses_[link.a].between(poses_[link.b])).log();
+    sum += d.dot(information * d);
+    count += 1.0;
+  };
+  for (const auto& step : graph_->steps) compare(step, step.information / scale.odometry);
+  for (std::size_t k = 0; k < used_loops_.size(); ++k) {
+    compare(graph_->loops[used_loops_[k]], loop_information(k, scale));
+  }
+  return sum > kSettled * kSettled * count;
+}
+
 // Of a link, where the factor was formed.
 template <class Pose>
 struct Estimate<Pose>::AtFactor {
@@ -265,23 +282,31 @@ std::pair<Index, Index> Estimate<Pose>::parts(const Link<Pose>& loop) const {
   return {component_[loop.a], component_[loop.b]};
 }
 
+// Of u + v the covariance is no more than twice the sum of those of u and v.
 template <class Pose>
 std::vector<typename Pose::Matrix> Estimate<Pose>::residual_covariances(
-    std::span<const Link<Pose>* const> links, int threads) const {
-  const std::vector<Index>& variable = equations_->gauge().variable;
+    const Links& links, int threads, const Links& bounded) const {
+  const auto row = [this](const Link<Pose>& link, Index end) {
+    return link.a == link.b ? Index{-1} : equations_->gauge().variable[end];
+  };
   std::vector<std::pair<Index, Index>> pairs;
-  pairs.reserve(links.size());
-  for (const auto* link : links) {
-    const bool turns_back = link->a == link->b;
-    pairs.emplace_back(turns_back ? -1 : variable[link->a], turns_back ? -1 : variable[link->b]);
+  pairs.reserve(links.size() + 2 * bounded.size());
+  for (const auto* link : links) pairs.emplace_back(row(*link, link->a), row(*link, link->b));
+  for (const auto* link : bounded) {
+    pairs.emplace_back(row(*link, link->a), -1);
+    pairs.emplace_back(-1, row(*link, link->b));
   }
   const auto known = spectral::pair_covariances<Pose::kDof>(equations_->hessian(), pairs, threads);
-  std::vector<Matrix> covariances(links.size());
-  parallel_for_each(links.size(), threads, [&](std::size_t k) {
-    const auto [r, by_a, by_b] = derivative(*links[k]);
-    const Matrix across = by_a * known[k].cross * by_b.transpose();
-    covariances[k] = by_a * known[k].first * by_a.transpose() +
-                     by_b * known[k].second * by_b.transpose() + across + across.transpose();
+  std::vector<Matrix> covariances(links.size() + bounded.size());
+  parallel_for_each(covariances.size(), threads, [&](std::size_t k) {
+    const bool exact = k < links.size();
+    const auto [r, by_a, by_b] = derivative(exact ? *links[k] : *bounded[k - links.size()]);
+    const auto& of_a = known[exact ? k : 2 * k - links.size()];
+    const auto& of_b = known[exact ? k : 2 * k - links.size() + 1];
+    const Matrix alone =
+        by_a * of_a.first * by_a.transpose() + by_b * of_b.second * by_b.transpose();
+    const Matrix across = exact ? Matrix(by_a * of_a.cross * by_b.transpose()) : 0.5 * alone;
+    covariances[k] = alone + across + across.transpose();
   });
   return covariances;
 }

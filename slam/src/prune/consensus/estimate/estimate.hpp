@@ -79,6 +79,10 @@ class Estimate {
   /// Where the factor was formed.
   Derivative derivative(const Link<Pose>& link) const;
 
+  /// Whether links of odometry and of the accepted loops are others than on that layout, by as many
+  /// deviations (root mean square) as matter.
+  bool differs_from(const Layout& layout, const CovarianceScale& scale) const;
+
   /// Takes poses to the chordal relaxation of odometry and the accepted loops, which does not
   /// depend on where they are: Gauss-Newton ends at the nearest of what may be many minima (L.
   /// Carlone et al., "Initialization Techniques for 3D SLAM", ICRA 2015); update() must follow.
@@ -92,10 +96,13 @@ class Estimate {
   /// Moves the free poses as moved(); update() must follow.
   void follow(const Eigen::VectorXd& moves);
 
-  /// Covariances of the residuals of `links` where the factor of the last update was formed, found
-  /// on `threads` threads (0: all cores). The ends of each must be connected.
-  std::vector<Matrix> residual_covariances(std::span<const Link<Pose>* const> links,
-                                           int threads = 1) const;
+  using Links = std::vector<const Link<Pose>*>;
+
+  /// Covariances of the residuals of `links` where the factor of the last update was formed, then
+  /// of those of `bounded` what they are at most however their ends are correlated, which takes
+  /// less time; found on `threads` threads (0: all cores). The ends of each must be connected.
+  std::vector<Matrix> residual_covariances(const Links& links, int threads = 1,
+                                           const Links& bounded = {}) const;
 
   /// r' Omega r summed over odometry, in units of the graph's covariances.
   double odometry_cost() const;

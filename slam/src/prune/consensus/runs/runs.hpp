@@ -31,6 +31,9 @@ class Runs {
     return copied_[loop] ? LabelCounts::kCopy : LabelCounts::kFirst;
   }
 
+  /// Whether none leads it, and it leads none.
+  bool by_itself(Index loop) const { return before_[loop] == kNone && followers_[loop].empty(); }
+
   /// Those that it leads.
   const std::vector<Index>& followers(Index loop) const { return followers_[loop]; }
 

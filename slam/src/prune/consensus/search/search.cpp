@@ -31,7 +31,6 @@ void keep_peaks(std::vector<Explanation<Pose>>& found) {
 // Evidence of what is not so much worse than the best of these that it changes no probability.
 template <class Pose>
 double least_that_tells(const std::vector<Explanation<Pose>>& found) {
-  constexpr double kNoDigit = 40.0;  // nats: beyond the last of a double
   return found.empty() ? -std::numeric_limits<double>::infinity()
                        : best_of(found).evidence - kNoDigit;
 }
