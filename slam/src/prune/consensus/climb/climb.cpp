@@ -122,14 +122,17 @@ void Climb<Pose>::begin_at(const Explanation<Pose>& found) {
 
 template <class Pose>
 bool Climb<Pose>::explains_all(const Explanation<Pose>& found) const {
-  return are_decided(found, std::vector<bool>(found.accepted.size(), true));
+  return are_few(found.expected_wrong(std::vector<bool>(found.accepted.size(), true)));
 }
 
 template <class Pose>
-bool Climb<Pose>::are_decided(const Explanation<Pose>& found,
-                              const std::vector<bool>& are_true) const {
-  return found.expected_wrong(are_true) <=
-         options_.significance * static_cast<double>(are_true.size());
+bool Climb<Pose>::is_decided(const Explanation<Pose>& found) const {
+  return are_few(found.expected_wrong(found.accepted));
+}
+
+template <class Pose>
+bool Climb<Pose>::are_few(double wrong) const {
+  return wrong <= options_.significance * static_cast<double>(last_held_.size());
 }
 
 template <class Pose>
@@ -266,7 +269,7 @@ const Explanation<Pose>* Climb<Pose>::grow() {
 template <class Pose>
 bool Climb<Pose>::move() {
   if (shift() || at_.learn_more_than(0.0)) return true;
-  if (!to_the_last_ && at_.is_highest() && are_decided(at_.now, at_.now.accepted)) return false;
+  if (!to_the_last_ && at_.is_highest() && is_decided(at_.now)) return false;
   return explain_the_same_better() ||
          at_.once(Trial::undecided, [this] { return accept_undecided(); }) ||
          (at_.is_highest() && at_.once(Trial::doubted, [this] { return drop_doubted_run(); }));

@@ -57,6 +57,9 @@ class Climb {
   /// wrong if all were kept is expected to be no more than was asked for.
   bool explains_all(const Explanation<Pose>& found) const;
 
+  /// Whether no more of its verdicts are expected to be wrong than may be.
+  bool is_decided(const Explanation<Pose>& found) const;
+
   /// Goes back to an explanation that was found.
   void stand_at(const Explanation<Pose>& found);
 
@@ -98,9 +101,8 @@ class Climb {
 
   // Twice the log odds that a verdict takes.
   double beyond_doubt() const { return 2.0 * log_odds_of(1.0 - options_.significance); }
-  // Whether no more loops are expected not to be what is taken for true or false than verdicts may
-  // be wrong.
-  bool are_decided(const Explanation<Pose>& found, const std::vector<bool>& are_true) const;
+  // Whether so few loops are expected not to be what they are taken for.
+  bool are_few(double wrong) const;
   bool is_at(const Explanation<Pose>& found) const;
   void begin_at(const Explanation<Pose>& found);
   void find_nothing(double least);

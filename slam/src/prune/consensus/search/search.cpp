@@ -62,6 +62,7 @@ std::vector<Standpoint<Pose>> standpoints(const Climb<Pose>& whole,
   if (sampled.empty()) return standpoints;
   const Objective<Pose> part = objective.of(sampled);
   Climb<Pose> climb = whole.on(part);
+  depth.of_sample = true;
   const auto found = search(climb, depth);
   if (!can_refute(found.front().accepted_count())) return standpoints;
   const double least = found.front().evidence - log_odds_of(1.0 - whole.options().significance);
@@ -143,7 +144,8 @@ std::vector<Explanation<Pose>> search(Climb<Pose>& climb, SearchDepth depth) {
   };
   if (astray()) climb_from_each_start(calibrate, try_start);
   if (calibrate && !astray()) {
-    if (!all_explained()) {
+    const bool enough = depth.of_sample && climb.is_decided(best_of(found));
+    if (!all_explained() && !enough) {
       try_slips(climb, found);
       if (at_once) settle_anew(climb, found);
     }

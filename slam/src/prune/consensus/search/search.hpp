@@ -12,6 +12,9 @@ struct SearchDepth {
   bool to_the_last = true;
   /// Whether a sample is as many of the loops as make one, where a tenth of them are too few.
   bool sample_soon = false;
+  /// Whether what is found is but a start for others: where few verdicts can be wrong it is not
+  /// explained otherwise.
+  bool of_sample = false;
 };
 
 /// The explanations that `climb` finds for all loops of its objective, the best first, each once;
