@@ -56,7 +56,7 @@ POSITION = "climb/position.cpp"
 SLIPS = "climb/slip_trials.cpp"
 MOVES = {
     "lessons of the common scales alone":
-        (POSITION, "    if (failed_[trial]) continue;\n",
+        (POSITION, "    if (failures_.of[trial]) continue;\n",
          "if (trial == Trial::lesson_of_scales && {off}) continue;"),
     "most loops called wider or sharper":
         ("climb/learn.cpp", "sharper_most(shares)}) {\n", "if (start.factor != 1.0 && {off}) continue;"),
@@ -65,7 +65,7 @@ MOVES = {
          "if ({off}) {{ start(none); return climb(); }}"),
     "far starts": ("search/search.cpp", ": std::span(kStarts).subspan(kStartsAlways)) {\n",
                    "if ({off}) break;"),
-    "the map laid out anew": (CLIMB, "::lay_out_anew() {\n", "if ({off}) return false;"),
+    "the map laid out anew": (POSITION, "::try_another_map() {\n", "if ({off}) return false;"),
     "all loops true": (CLIMB, "::all_true(const Explanation<Pose>& found, double least) {\n",
                        "if ({off}) return found;"),
     "loops weighed by the others": (CLIMB, "::weigh_by_others() {\n", "if ({off}) return false;"),
@@ -87,6 +87,9 @@ MOVES = {
     "climbs ended where an earlier one passed":
         ("climb/peaks.cpp", "::beyond(const Explanation<Pose>& now) const {\n",
          "if ({off}) return nullptr;"),
+    "loops refuted by bounds on their covariances":
+        ("climb/assessment.cpp", "::refute(Explanation<Pose>& now, Index loop) {\n",
+         "if ({off}) return;"),
     "the search ended where as good as all loops are true":
         (CLIMB, "::explains_all(const Explanation<Pose>& found) const {\n",
          "if ({off}) return false;"),

@@ -16,8 +16,7 @@ template <class Pose>
 void Position<Pose>::begin() {
   dropped.assign(now.accepted.size(), false);
   learnt_from_ = 0;
-  failed_ = {};
-  promised_ = 0.0;
+  failures_ = {};
   best = now;
 }
 
@@ -29,8 +28,7 @@ bool Position<Pose>::assess(double least) {
 template <class Pose>
 bool Position<Pose>::note(bool assessed) {
   if (!assessed) return false;
-  failed_ = {};
-  promised_ = 0.0;
+  failures_ = {};
   if (now.evidence > best.evidence) best = now;
   peaks.pass(now);
   return true;
@@ -38,9 +36,9 @@ bool Position<Pose>::note(bool assessed) {
 
 template <class Pose>
 bool Position<Pose>::once(Trial trial, const std::function<bool()>& move) {
-  if (failed_[trial]) return false;
+  if (failures_.of[trial]) return false;
   if (move()) return true;
-  failed_[trial] = true;
+  failures_.of[trial] = true;
   return false;
 }
 
@@ -84,7 +82,7 @@ bool Position<Pose>::all_or_nothing(const std::function<bool()>& moves) {
 template <class Pose>
 bool Position<Pose>::try_with(const Change& change, TrialTerms terms) {
   const double least = now.evidence + terms.gain;
-  const double known = promised_ + kBetter;
+  const double known = failures_.promised + kBetter;
   return all_or_nothing([&] {
     change(now);
     if (terms.learning) assessment.forget_nearness();
@@ -96,8 +94,7 @@ template <class Pose>
 void Position<Pose>::go_back(const Place& place) {
   now = place.now;
   assessment.restore(now, place.found);
-  failed_ = place.failed;
-  promised_ = place.promised;
+  failures_ = place.failures;
   dropped = place.dropped;
 }
 
@@ -113,13 +110,13 @@ bool Position<Pose>::learn_more_than(double gain, double worth) {
   learnt_from_ = std::max<std::size_t>(now.accepted_count(), 1);
   const double least = std::max(gain, worth);
   for (const Trial trial : {Trial::lesson, Trial::lesson_of_scales}) {
-    if (failed_[trial]) continue;
+    if (failures_.of[trial]) continue;
     const Lesson<Pose> found = learn(assessment, now, trial == Trial::lesson_of_scales);
     if (found.gain <= least) continue;
     if (try_with(scales_of(found), {.gain = worth})) return true;
-    failed_[trial] = true;
-    promised_ = std::max(promised_, found.gain);
-    if (found.shapes.is_about(now.shapes)) failed_[Trial::lesson_of_scales] = true;
+    failures_.of[trial] = true;
+    failures_.promised = std::max(failures_.promised, found.gain);
+    if (found.shapes.is_about(now.shapes)) failures_.of[Trial::lesson_of_scales] = true;
   }
   return false;
 }

@@ -75,9 +75,10 @@ class Position {
   /// where odometry and the first accepted loops led.
   bool try_another_map();
 
-  /// Whether nothing higher was found, on the way or by an earlier climb.
+  /// Whether nothing better was found on the way, and nothing higher by an earlier climb: a trial
+  /// that failed may have passed by what is a little higher.
   bool is_highest() const {
-    return now.evidence >= best.evidence && peaks.none_above(now.evidence);
+    return now.evidence + kBetter > best.evidence && peaks.none_above(now.evidence);
   }
 
   void take_as(const Selection& loops, bool accepted);
@@ -110,12 +111,17 @@ class Position {
   std::vector<bool> dropped;  ///< since the climb last rose; not tried again
 
  private:
+  // Trials that failed here, and what the lessons among them promised at most.
+  struct Failures {
+    std::array<bool, trials> of{};
+    double promised = 0.0;
+  };
+
   // What a trial that fails goes back to.
   struct Place {
     Explanation<Pose> now;
     typename Assessment<Pose>::Findings found;
-    std::array<bool, trials> failed;
-    double promised;
+    Failures failures;
     std::vector<bool> dropped;
   };
 
@@ -124,14 +130,13 @@ class Position {
   // Whether the scales that can be learnt from here by more than that explain the same loops
   // better.
   bool outdoes(double evidence, double known);
-  Place here() const { return {now, assessment.findings(), failed_, promised_, dropped}; }
+  Place here() const { return {now, assessment.findings(), failures_, dropped}; }
   void go_back(const Place& place);
   void slip(std::span<const SlipChange> changes);
 
   bool calibrate_;
   std::size_t learnt_from_ = 0;
-  std::array<bool, trials> failed_{};
-  double promised_ = 0.0;  // by the lessons that failed
+  Failures failures_;
 };
 
 extern template class Position<Pose2>;
