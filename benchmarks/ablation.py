@@ -88,8 +88,8 @@ MOVES = {
         ("climb/peaks.cpp", "::beyond(const Explanation<Pose>& now) const {\n",
          "if ({off}) return nullptr;"),
     "loops refuted by bounds on their covariances":
-        ("climb/assessment.cpp", "::refute(Explanation<Pose>& now, Index loop) {\n",
-         "if ({off}) return;"),
+        ("climb/assessment.cpp", "::refute(Explanation<Pose>& now, Index loop) const {\n",
+         "if ({off}) return false;"),
     "the search ended where as good as all loops are true":
         (CLIMB, "::explains_all(const Explanation<Pose>& found) const {\n",
          "if ({off}) return false;"),

@@ -88,14 +88,13 @@ bool Assessment<Pose>::weigh_peak(Explanation<Pose>& now, double least) {
   // The more redundancy there is, the narrower is the peak of the scales.
   now.redundancy = {};
   if (fit + objective_.log_scale_peak(now) < least) return false;
-  predict(now);
+  std::vector<Index> bounded = predict(now);
   find_redundancy(now);
   now.layout = estimate_.layout();
   if (pace_) pace_(kCovarianceWork * estimate_.work());
   now.evidence = fit + objective_.log_scale_peak(now);
   if (now.evidence < least) return false;
-  predict_others(now);
-  weigh(now);
+  weigh(now, predict_others(now, std::move(bounded)));
   return true;
 }
 
@@ -270,18 +269,18 @@ typename Pose::Matrix Assessment<Pose>::uncertainty(const Explanation<Pose>& now
 }
 
 // Covariances of odometry's steps and of the accepted loops, which tell how accurate both are, and
-// bounds of the others' whose ends are joined. Where nothing is accepted and odometry does not meet
-// itself they have been composed already.
+// bounds of the others' whose ends are joined, which it returns. Where nothing is accepted and
+// odometry does not meet itself they have been composed already.
 template <class Pose>
-void Assessment<Pose>::predict(Explanation<Pose>& now) {
+std::vector<Index> Assessment<Pose>::predict(Explanation<Pose>& now) {
   const bool alone = now.accepted_count() == 0 && found_.graph->is_forest();
   now.standings.resize(now.accepted.size());
-  bounded_.clear();
+  std::vector<Index> bounded;
   std::vector<Index> accepted;
   std::vector<Index> composed;
   for (Index loop = 0; loop < static_cast<Index>(now.accepted.size()); ++loop) {
     const auto [first, second] = estimate_.parts(graph().loops[loop]);
-    auto& joined = now.accepted[loop] ? accepted : bounded_;
+    auto& joined = now.accepted[loop] ? accepted : bounded;
     (alone || first != second ? composed : joined).push_back(loop);
   }
   parallel_for_each(composed.size(), threads_, [&](std::size_t i) {
@@ -289,31 +288,36 @@ void Assessment<Pose>::predict(Explanation<Pose>& now) {
   });
   found_.steps = nullptr;
   now.odometry_cost.setZero();
-  if (!alone) solve(now, accepted);
+  if (!alone) solve(now, accepted, bounded);
   found_.held = accepted_information(now);
+  return bounded;
 }
 
-// Of the loops that are bounded those that are not refuted however their ends are correlated.
+// Of the loops that are bounded those that are not refuted however their ends are correlated; one
+// flag a loop that is.
 template <class Pose>
-void Assessment<Pose>::predict_others(Explanation<Pose>& now) {
-  refuted_.assign(now.accepted.size(), 0);
-  parallel_for_each(bounded_.size(), threads_, [&](std::size_t i) { refute(now, bounded_[i]); });
-  std::erase_if(bounded_, [this](Index loop) { return refuted_[loop] != 0; });
-  const auto covariances = estimate_.residual_covariances(links_of(bounded_), threads_);
-  for (std::size_t i = 0; i < bounded_.size(); ++i) believe(bounded_[i], covariances[i]);
+std::vector<char> Assessment<Pose>::predict_others(Explanation<Pose>& now,
+                                                   std::vector<Index> bounded) {
+  std::vector<char> refuted(now.accepted.size(), 0);
+  parallel_for_each(bounded.size(), threads_,
+                    [&](std::size_t i) { refuted[bounded[i]] = refute(now, bounded[i]) ? 1 : 0; });
+  std::erase_if(bounded, [&](Index loop) { return refuted[loop] != 0; });
+  const auto covariances = estimate_.residual_covariances(links_of(bounded), threads_);
+  for (std::size_t i = 0; i < bounded.size(); ++i) believe(bounded[i], covariances[i]);
+  return refuted;
 }
 
 // If it can be, by itself: what of a run is likely the others tell. Of a smaller covariance a
 // density may be higher by the ratio of the volumes at most.
 template <class Pose>
-void Assessment<Pose>::refute(Explanation<Pose>& now, Index loop) {
-  if (!objective_.runs().by_itself(loop)) return;
+bool Assessment<Pose>::refute(Explanation<Pose>& now, Index loop) const {
+  if (!objective_.runs().by_itself(loop)) return false;
   Standing standing = other_standing(now, loop);
   const auto most = detail::predict<Pose>(belief(loop), own_error(loop).learnt);
   standing.evidence += 0.5 * (most.variance.array() / found_.mixture.scale).log1p().sum();
-  if (standing.evidence >= -kNoDigit) return;
+  if (standing.evidence >= -kNoDigit) return false;
   now.standings[loop] = standing;
-  refuted_[loop] = 1;
+  return true;
 }
 
 template <class Pose>
@@ -340,13 +344,14 @@ typename Pose::Matrix Assessment<Pose>::odometry_says(Index loop, double scale) 
 
 // Those of these loops, bounds, and what odometry tells of its accuracy.
 template <class Pose>
-void Assessment<Pose>::solve(Explanation<Pose>& now, const std::vector<Index>& accepted) {
+void Assessment<Pose>::solve(Explanation<Pose>& now, const std::vector<Index>& accepted,
+                             const std::vector<Index>& bounded) {
   auto links = links_of(accepted);
   for (const auto& step : graph().steps) links.push_back(&step);
-  const auto covariances = estimate_.residual_covariances(links, threads_, links_of(bounded_));
+  const auto covariances = estimate_.residual_covariances(links, threads_, links_of(bounded));
   for (std::size_t i = 0; i < accepted.size(); ++i) believe(accepted[i], covariances[i]);
-  for (std::size_t i = 0; i < bounded_.size(); ++i) {
-    believe(bounded_[i], covariances[links.size() + i]);
+  for (std::size_t i = 0; i < bounded.size(); ++i) {
+    believe(bounded[i], covariances[links.size() + i]);
   }
   auto steps = std::make_shared<std::vector<Belief<Pose>>>(graph().steps.size());
   parallel_for_each(steps->size(), threads_, [&](std::size_t k) {
@@ -367,10 +372,10 @@ std::vector<SlipChange> Assessment<Pose>::slip_changes(const Explanation<Pose>& 
 }
 
 template <class Pose>
-void Assessment<Pose>::weigh(Explanation<Pose>& now) {
+void Assessment<Pose>::weigh(Explanation<Pose>& now, const std::vector<char>& refuted) {
   parallel_for_each(now.accepted.size(), threads_, [&](std::size_t k) {
     const auto loop = static_cast<Index>(k);
-    if (refuted_[k] != 0) return;
+    if (refuted[k] != 0) return;
     now.standings[k] = now.accepted[k] ? accepted_standing(now, loop) : other_standing(now, loop);
   });
   add_prior(now);

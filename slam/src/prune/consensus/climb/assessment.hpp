@@ -149,15 +149,16 @@ class Assessment {
     return {graph().loops[loop].covariance, objective_.stated().reduced.loops[loop].covariance};
   }
   void weigh_new(Explanation<Pose>& now);
-  void predict(Explanation<Pose>& now);
+  std::vector<Index> predict(Explanation<Pose>& now);
   Matrix odometry_says(Index loop, double scale) const;
   void believe(Index loop, const Matrix& covariance);
-  void solve(Explanation<Pose>& now, const std::vector<Index>& accepted);
-  void predict_others(Explanation<Pose>& now);
-  void refute(Explanation<Pose>& now, Index loop);
+  void solve(Explanation<Pose>& now, const std::vector<Index>& accepted,
+             const std::vector<Index>& bounded);
+  std::vector<char> predict_others(Explanation<Pose>& now, std::vector<Index> bounded);
+  bool refute(Explanation<Pose>& now, Index loop) const;
   typename Estimate<Pose>::Links links_of(const std::vector<Index>& loops) const;
   void follow_runs(const Explanation<Pose>& now);
-  void weigh(Explanation<Pose>& now);
+  void weigh(Explanation<Pose>& now, const std::vector<char>& refuted);
   void find_redundancy(Explanation<Pose>& now) const;
   Standing accepted_standing(const Explanation<Pose>& now, Index loop) const;
   Standing other_standing(const Explanation<Pose>& now, Index loop) const;
@@ -169,8 +170,6 @@ class Assessment {
   Findings found_;
   Estimate<Pose> estimate_;
   std::optional<BiasFit<Pose>> bias_;  // at the peak
-  std::vector<Index> bounded_;         // loops of whose covariances only bounds are known
-  std::vector<char> refuted_;          // one flag a loop: by such a bound
   typename Estimate<Pose>::Layout odometry_;
   bool nearness_held_ = false;
   bool scales_known_ = false;
