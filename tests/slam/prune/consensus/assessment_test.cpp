@@ -118,6 +118,26 @@ TYPED_TEST(AssessmentOf, WeighsLoopsAsTheOthersSay) {
 }
 
 // One of them by too little for a bound to tell.
+// The same odometry in two chains, the later one numbered backwards, and a trusted edge between.
+// Without a bias, which chains alone have.
+TYPED_TEST(AssessmentOf, WeighsLoopsAcrossATrustedEdgeAsAlongAChain) {
+  const auto roles = edge_roles(this->graph_);
+  auto apart = this->graph_;
+  for (auto& constraint : apart.constraints) {
+    for (Index* end : {&constraint.from, &constraint.to}) *end = *end < 40 ? *end : 119 - *end;
+  }
+  std::vector<Standing> standings;
+  for (const auto& graph : {this->graph_, apart}) {
+    const Objective<TypeParam> objective(graph, roles, 20, false);
+    Assessment<TypeParam> assessment(objective);
+    const auto now = this->accepting(assessment, 0);
+    standings.insert(standings.end(), now.standings.begin(), now.standings.end());
+  }
+  for (int k = 0; k < this->kLoops; ++k) {
+    EXPECT_NEAR(standings[k].chi2, standings[k + this->kLoops].chi2, 1e-6 * standings[k].chi2) << k;
+  }
+}
+
 TYPED_TEST(AssessmentOf, RefutesByBoundsWhatIsRefutedExactly) {
   using Pose = TypeParam;
   auto graph = this->graph_;

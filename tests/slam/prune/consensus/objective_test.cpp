@@ -204,7 +204,7 @@ TYPED_TEST(ObjectiveOf, KnowsTheInformationOfOdometry) {
       roles.candidates.pop_back();
     }
     const auto scaled = scaled_graph(made.graph, roles, {}, Shapes<Pose>());
-    EXPECT_EQ(scaled.is_forest(), forest);
+    EXPECT_EQ(scaled.is_chains(), forest);
     Estimate<Pose> odometry(scaled.reduced);
     odometry.update(std::vector<bool>(scaled.reduced.loops.size(), false), {}, 0);
     const double expected = odometry.log_determinant();

@@ -270,10 +270,10 @@ typename Pose::Matrix Assessment<Pose>::uncertainty(const Explanation<Pose>& now
 
 // Covariances of odometry's steps and of the accepted loops, which tell how accurate both are, and
 // bounds of the others' whose ends are joined, which it returns. Where nothing is accepted and
-// odometry does not meet itself they have been composed already.
+// odometry is chains alone they have been composed already.
 template <class Pose>
 std::vector<Index> Assessment<Pose>::predict(Explanation<Pose>& now) {
-  const bool alone = now.accepted_count() == 0 && found_.graph->is_forest();
+  const bool alone = now.accepted_count() == 0 && found_.graph->is_chains();
   now.standings.resize(now.accepted.size());
   std::vector<Index> bounded;
   std::vector<Index> accepted;

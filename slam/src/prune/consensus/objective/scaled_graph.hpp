@@ -41,8 +41,8 @@ struct ScaledGraph {
   double log_information = 0.0;       ///< log |Omega|, summed over its steps
   Index variables = 0;                ///< poses that are free in it
 
-  /// Whether one path of trusted edges at most joins any two poses.
-  bool is_forest() const { return reduced.steps.size() == static_cast<std::size_t>(variables); }
+  /// Whether trusted edges are steps along chains alone, of which one path joins two poses at most.
+  bool is_chains() const { return reduced.steps.size() == reduced.contracted; }
 };
 
 /// `chain`: of its odometry.
