@@ -13,8 +13,9 @@ namespace {
 
 // How the order of ids, and that of the file, go with edges.
 struct Order {
-  Index pairs = 0;   // neighbours in the order of ids, of one robot
-  Index joined = 0;  // of these, by odometry
+  Index pairs = 0;    // neighbours in the order of ids, of one robot
+  Index joined = 0;   // of these, by odometry
+  Index bridged = 0;  // of these, by odometry that leads past another pose
   Index robots = 0;
   Index chained = 0;  // edges that start where the one before ends
 };
@@ -29,11 +30,16 @@ Order order_of(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
   }
   order.robots = static_cast<Index>(robots.size());
   std::vector<bool> joined(graph.ids.size(), false);
-  for (const Index k : roles.odometry) {
-    const auto& [from, to] = std::minmax(graph.constraints[k].from, graph.constraints[k].to);
-    if (to - from == 1) joined[from] = true;
-  }
-  order.joined = static_cast<Index>(std::count(joined.begin(), joined.end(), true));
+  const auto join_over = [&](Index span) {  // as edge_roles() has it
+    for (const Index k : roles.odometry) {
+      const auto [from, to] = std::minmax(graph.constraints[k].from, graph.constraints[k].to);
+      if (to - from == span) joined[joined[from] ? to - 1 : from] = true;
+    }
+    return static_cast<Index>(std::ranges::count(joined, true));
+  };
+  const Index by_step = join_over(1);
+  order.joined = join_over(2);
+  order.bridged = order.joined - by_step;
   for (std::size_t k = 1; k < graph.constraints.size(); ++k) {
     if (graph.constraints[k].from == graph.constraints[k - 1].to) ++order.chained;
   }
@@ -43,6 +49,13 @@ Order order_of(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
 template <class Pose>
 void doubt_order(const PoseGraph<Pose>& graph, const EdgeRoles& roles, std::vector<Doubt>& doubts) {
   const Order order = order_of(graph, roles);
+  if (order.bridged > 0) {
+    const std::string edges = counted(static_cast<std::uint64_t>(order.bridged), "edge");
+    doubts.push_back({"bridged odometry",
+                      "where no edge joins poses with neighbouring ids, odometry "
+                      "is taken to lead past one pose (" +
+                          edges + "; name it with --trusted otherwise)"});
+  }
   const Index missing = order.pairs - order.joined;
   if (missing == 0 || graph.constraints.empty()) return;
   const std::string measured = "no edge joins " + std::to_string(missing) + " of " +

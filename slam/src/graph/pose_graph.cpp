@@ -10,6 +10,32 @@ namespace {
 
 constexpr int kLetterShift = 56;  // GTSAM keys carry the robot's letter in the top byte
 
+// Pairs of neighbours in the order of ids, by the first one's position, that odometry has joined.
+using Joined = std::vector<bool>;
+
+// Whether this is the first that joins neighbours, or is said to be odometry.
+template <class Pose>
+bool take_step(const PoseGraph<Pose>& graph, const Constraint<Pose>& constraint, Joined& joined) {
+  if (constraint.link == LinkKind::loop || constraint.from == constraint.to) return false;
+  const auto [first, second] = std::minmax(constraint.from, constraint.to);
+  const bool neighbours = second - first == 1 && graph.robot(first) == graph.robot(second);
+  if (!neighbours) return constraint.link == LinkKind::odometry;
+  if (joined[first]) return false;
+  joined[first] = true;
+  return true;
+}
+
+// Whether it leads past one pose, where that and the one before or after it are not joined.
+template <class Pose>
+bool bridge_gap(const PoseGraph<Pose>& graph, const Constraint<Pose>& constraint, Joined& joined) {
+  const auto [first, second] = std::minmax(constraint.from, constraint.to);
+  const bool next_but_one = second - first == 2 && graph.robot(first) == graph.robot(second);
+  if (constraint.link == LinkKind::loop || !next_but_one) return false;
+  if (joined[first] && joined[first + 1]) return false;
+  joined[joined[first] ? first + 1 : first] = true;
+  return true;
+}
+
 }  // namespace
 
 template <class Pose>
@@ -38,18 +64,15 @@ std::string vertex_name(VertexId id) {
 
 template <class Pose>
 EdgeRoles edge_roles(const PoseGraph<Pose>& graph) {
+  Joined joined(graph.ids.size(), false);
+  std::vector<bool> is_odometry;
+  for (const auto& constraint : graph.constraints) {
+    is_odometry.push_back(take_step(graph, constraint, joined));
+  }
   EdgeRoles roles;
-  std::vector<bool> step_taken(graph.ids.size(), false);
-  for (Index k = 0; k < graph.constraint_count(); ++k) {
-    const auto& constraint = graph.constraints[k];
-    const Index first = std::min(constraint.from, constraint.to);
-    const Index second = std::max(constraint.from, constraint.to);
-    const bool neighbours = second - first == 1 && graph.robot(first) == graph.robot(second) &&
-                            constraint.link != LinkKind::loop;
-    const bool step = neighbours && !step_taken[first];
-    if (step) step_taken[first] = true;
-    const bool stated = constraint.link == LinkKind::odometry && !neighbours && second != first;
-    (step || stated ? roles.odometry : roles.candidates).push_back(k);
+  for (std::size_t k = 0; k < is_odometry.size(); ++k) {
+    const bool trusted = is_odometry[k] || bridge_gap(graph, graph.constraints[k], joined);
+    (trusted ? roles.odometry : roles.candidates).push_back(static_cast<Index>(k));
   }
   return roles;
 }

@@ -53,7 +53,7 @@ const typename EdgeLog<Pose>::Edge& EdgeLog<Pose>::add(VertexId from, VertexId t
   return edges_.emplace_back(edge);
 }
 
-// As edge_roles() has it, of what is known so far.
+// As edge_roles() has it, of what is known so far: a gap may still close, and is not bridged.
 template <class Pose>
 bool EdgeLog<Pose>::is_step(const Edge& edge) {
   const auto [first, second] = std::minmax(edge.from, edge.to);

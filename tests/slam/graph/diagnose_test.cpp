@@ -98,6 +98,10 @@ TEST(Diagnose, OdometryThatIsMissingOrUnderOtherNumbers) {
   ASSERT_EQ(doubts.size(), 1u);
   EXPECT_EQ(doubts[0].kind, "broken odometry");
   EXPECT_THAT(doubts[0].message, HasSubstr("no edge joins 1 of 599 pairs"));
+  auto bridged = broken;
+  bridged.constraints.push_back(graph.constraints[roles.odometry[100]]);
+  ++bridged.constraints.back().to;
+  EXPECT_THAT(kinds(bridged), ElementsAre("bridged odometry"));
   // 7 and 600 have no factor in common: every pose gets a number, far from the last one's.
   for (auto& edge : graph.constraints) {
     edge.from = edge.from * 7 % 600;

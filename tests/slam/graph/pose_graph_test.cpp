@@ -38,6 +38,32 @@ TEST(EdgeRoles, RobotsAreNotNeighbours) {
   EXPECT_THAT(roles.candidates, ElementsAre(1));
 }
 
+// Two sensors on one robot, numbered by turns that are not always in order of time.
+TEST(EdgeRoles, WhereNeighboursAreApartOdometryLeadsPastOnePose) {
+  PoseGraph<Pose2> graph;
+  graph.ids = {0, 1, 2, 3, 4, 5};
+  graph.constraints = {edge(0, 2), edge(2, 1), edge(1, 3), edge(1, 3), edge(3, 4), edge(4, 5)};
+  auto roles = edge_roles(graph);
+  EXPECT_THAT(roles.odometry, ElementsAre(0, 1, 2, 4, 5));
+  EXPECT_THAT(roles.candidates, ElementsAre(3));
+  graph.constraints.push_back(edge(0, 1));  // no gap is left before 2
+  graph.constraints.push_back(edge(2, 5));  // past two
+  roles = edge_roles(graph);
+  EXPECT_THAT(roles.odometry, ElementsAre(1, 2, 4, 5, 6));
+  EXPECT_THAT(roles.candidates, ElementsAre(0, 3, 7));
+  graph.constraints[2].link = graph.constraints[3].link = LinkKind::loop;
+  EXPECT_THAT(edge_roles(graph).odometry, ElementsAre(1, 4, 5, 6));
+}
+
+TEST(EdgeRoles, AGapBetweenRobotsStays) {
+  const VertexId a = VertexId{'a'} << 56;
+  const VertexId b = VertexId{'b'} << 56;
+  PoseGraph<Pose2> graph;
+  graph.ids = {a, a + 1, b, b + 1};
+  graph.constraints = {edge(0, 1), edge(2, 3), edge(0, 2), edge(1, 3)};
+  EXPECT_THAT(edge_roles(graph).odometry, ElementsAre(0, 1));
+}
+
 TEST(EdgeRoles, EmptyGraph) {
   const auto roles = edge_roles(PoseGraph<Pose3>());
   EXPECT_THAT(roles.odometry, IsEmpty());

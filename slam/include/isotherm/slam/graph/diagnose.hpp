@@ -18,7 +18,9 @@ struct Doubt {
 /// - "swapped ends", "angles in degrees": loops over short stretches of odometry fit once the
 ///   measurements are inverted, or their angles multiplied by pi / 180, and do not as they are;
 /// - "no odometry", "ids without order", "broken odometry": neighbours in the order of ids
-///   that no edge joins, while the edges follow each other in the file or do not;
+///   that no odometry joins (edge_roles()), while the edges follow each other in the file or do
+///   not;
+/// - "bridged odometry": where neighbours are not joined, odometry leads past one pose;
 /// - "zero information", "identity information", "identical information": what edges state
 ///   about themselves is nothing, or the same throughout.
 ///

@@ -75,9 +75,10 @@ struct EdgeRoles {
 
 /// Odometry is the first constraint, in either direction, between vertices that
 /// are neighbours in the order of ids; every other constraint is a candidate.
-/// Vertices of different robots are never neighbours. What a file calls a loop is a
-/// candidate wherever it leads; what it calls odometry is that between any two vertices,
-/// unless it repeats a step. O(m).
+/// Where none joins two neighbours (ids may be out of order by one, as of two sensors on one
+/// robot), it is the first that leads past one vertex there. Vertices of different robots are
+/// never neighbours. What a file calls a loop is a candidate wherever it leads; what it calls
+/// odometry is that between any two vertices, unless it repeats a step. O(m).
 template <class Pose>
 EdgeRoles edge_roles(const PoseGraph<Pose>& graph);
 

@@ -78,7 +78,7 @@ class OnlineConsensus {
                                    const Matrix& information);
 
   /// An edge as files have it: a step where its ends follow each other and none is known
-  /// between them, a loop elsewhere (edge_roles()).
+  /// between them, a loop elsewhere (edge_roles(), but that gaps are not bridged).
   std::vector<LoopChange> add_edge(VertexId from, VertexId to, const Pose& T_from_to,
                                    const Matrix& information, LinkKind link = LinkKind::unknown);
 
