@@ -24,10 +24,12 @@ template <class Pose>
 Order order_of(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
   Order order;
   std::set<std::uint64_t> robots;
+  std::vector<Index> pairs;  // by the first one
   for (Index v = 0; v < graph.vertex_count(); ++v) {
     robots.insert(graph.robot(v));
-    if (v > 0 && graph.robot(v) == graph.robot(v - 1)) ++order.pairs;
+    if (v > 0 && graph.robot(v) == graph.robot(v - 1)) pairs.push_back(v - 1);
   }
+  order.pairs = static_cast<Index>(pairs.size());
   order.robots = static_cast<Index>(robots.size());
   std::vector<bool> joined(graph.ids.size(), false);
   const auto join_over = [&](Index span) {  // as edge_roles() has it
@@ -35,7 +37,8 @@ Order order_of(const PoseGraph<Pose>& graph, const EdgeRoles& roles) {
       const auto [from, to] = std::minmax(graph.constraints[k].from, graph.constraints[k].to);
       if (to - from == span) joined[joined[from] ? to - 1 : from] = true;
     }
-    return static_cast<Index>(std::ranges::count(joined, true));
+    return static_cast<Index>(
+        std::ranges::count_if(pairs, [&](Index first) { return joined[first]; }));
   };
   const Index by_step = join_over(1);
   order.joined = join_over(2);

@@ -102,6 +102,9 @@ TEST(Diagnose, OdometryThatIsMissingOrUnderOtherNumbers) {
   bridged.constraints.push_back(graph.constraints[roles.odometry[100]]);
   ++bridged.constraints.back().to;
   EXPECT_THAT(kinds(bridged), ElementsAre("bridged odometry"));
+  bridged.robots.resize(bridged.ids.size());
+  for (Index v : {100, 102}) bridged.robots[v] = 1;  // no neighbours are apart
+  EXPECT_THAT(kinds(bridged), testing::Not(testing::Contains("bridged odometry")));
   // 7 and 600 have no factor in common: every pose gets a number, far from the last one's.
   for (auto& edge : graph.constraints) {
     edge.from = edge.from * 7 % 600;

@@ -55,6 +55,14 @@ TEST(EdgeRoles, WhereNeighboursAreApartOdometryLeadsPastOnePose) {
   EXPECT_THAT(edge_roles(graph).odometry, ElementsAre(1, 4, 5, 6));
 }
 
+TEST(EdgeRoles, OfRobotsWhoseIdsAlternate) {
+  PoseGraph<Pose2> graph;
+  graph.ids = {0, 1, 2, 3};
+  graph.robots = {0, 1, 0, 1};
+  graph.constraints = {edge(0, 2), edge(0, 1), edge(1, 3)};
+  EXPECT_THAT(edge_roles(graph).odometry, ElementsAre(0, 2));
+}
+
 TEST(EdgeRoles, AGapBetweenRobotsStays) {
   const VertexId a = VertexId{'a'} << 56;
   const VertexId b = VertexId{'b'} << 56;
