@@ -117,7 +117,6 @@ TYPED_TEST(AssessmentOf, WeighsLoopsAsTheOthersSay) {
   }
 }
 
-// One of them by too little for a bound to tell.
 // The same odometry in two chains, the later one numbered backwards, and a trusted edge between.
 // Without a bias, which chains alone have.
 TYPED_TEST(AssessmentOf, WeighsLoopsAcrossATrustedEdgeAsAlongAChain) {
@@ -138,6 +137,7 @@ TYPED_TEST(AssessmentOf, WeighsLoopsAcrossATrustedEdgeAsAlongAChain) {
   }
 }
 
+// One of them by too little for a bound to tell.
 TYPED_TEST(AssessmentOf, RefutesByBoundsWhatIsRefutedExactly) {
   using Pose = TypeParam;
   auto graph = this->graph_;

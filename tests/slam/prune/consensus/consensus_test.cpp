@@ -588,7 +588,7 @@ TEST(Consensus, FalseLoopsThatCrowdAroundTheGateDoNotPass) {
 }
 
 // Odometry in pieces of ten poses, with edges that skip a pose where a step is missing.
-TEST(Consensus, JoinsBrokenOdometryByShortLoops) {
+Corrupted<Pose2> city_in_pieces_of_ten() {
   auto city = simulate_city({.poses = 600, .measurements = {.loops = 200}, .seed = 4});
   auto& constraints = city.graph.constraints;
   const auto step = constraints.front();
@@ -606,16 +606,11 @@ TEST(Consensus, JoinsBrokenOdometryByShortLoops) {
     add(v - 1, v + 1);
   }
   for (Index v = 1; v + 2 < 600; ++v) add(v, v + 2);
-  const auto bad = corrupt(city.graph, city.truth, {.fraction = 0.3, .seed = 4});
-  const auto result = consensus(bad.graph, edge_roles(bad.graph));
-  const auto metrics = evaluate_loops(result.verdicts, bad.labels);
-  EXPECT_GE(metrics.precision(), 0.99);
-  EXPECT_GE(metrics.recall(), 0.99);
-  EXPECT_LE(count(result.verdicts, Verdict::ambiguous), 1);
+  return corrupt(city.graph, city.truth, {.fraction = 0.3, .seed = 4});
 }
 
 // The same with a single edge over each gap, which no other confirms.
-TEST(Consensus, JoinsBrokenOdometryByTheSpanOfLoops) {
+Corrupted<Pose2> city_in_pieces_of_twenty() {
   auto city = simulate_city({.poses = 600, .measurements = {.loops = 200}, .seed = 8});
   auto& constraints = city.graph.constraints;
   const auto step = constraints.front();
@@ -628,12 +623,25 @@ TEST(Consensus, JoinsBrokenOdometryByTheSpanOfLoops) {
     skip.T_from_to = city.truth[v].inverse() * city.truth[v + 2];
     constraints.push_back(skip);
   }
-  const auto bad = corrupt(city.graph, city.truth, {.fraction = 0.5, .seed = 8});
-  const auto result = consensus(bad.graph, edge_roles(bad.graph));
-  const auto metrics = evaluate_loops(result.verdicts, bad.labels);
-  EXPECT_GE(metrics.precision(), 0.99);
-  EXPECT_GE(metrics.recall(), 0.99);
-  EXPECT_LE(count(result.verdicts, Verdict::ambiguous), 1);
+  return corrupt(city.graph, city.truth, {.fraction = 0.5, .seed = 8});
+}
+
+TEST(Consensus, JoinsBrokenOdometryByEdgesPastOnePose) {
+  for (const auto& bad : {city_in_pieces_of_ten(), city_in_pieces_of_twenty()}) {
+    const auto verdicts = consensus(bad.graph, edge_roles(bad.graph)).verdicts;
+    const auto metrics = evaluate_loops(verdicts, bad.labels);
+    EXPECT_GE(metrics.precision(), 0.99);
+    EXPECT_GE(metrics.recall(), 0.99);
+    EXPECT_LE(count(verdicts, Verdict::ambiguous), 1);
+  }
+}
+
+// Not met: in each city one loop stays ambiguous.
+TEST(Consensus, DISABLED_LeavesNoDoubtWhereOdometryIsBroken) {
+  for (const auto& bad : {city_in_pieces_of_ten(), city_in_pieces_of_twenty()}) {
+    const auto result = consensus(bad.graph, edge_roles(bad.graph));
+    EXPECT_EQ(count(result.verdicts, Verdict::ambiguous), 0);
+  }
 }
 
 // One step of odometry is missing, and false loops come in groups that agree as true ones
